@@ -187,7 +187,7 @@ bool Micromodem::ObeySending(const Fields& fields, TimeNs t) {
 bool Micromodem::CommandCycle(const Fields& fields, TimeNs t) {
   const auto n = Numbers(fields, {15, kHighestAddress, kHighestAddress, kRates - 1, 1, 8});
   if (!n) return false;
-  Header h;
+  PacketHeader h;
   h.type = PacketType::kCycle;
   h.poller_command = (*n)[0];
   h.source = (*n)[1];
@@ -245,7 +245,7 @@ bool Micromodem::CommandFrame(const Fields& fields, bool text, TimeNs t) {
     SendFrames(t);
     return true;
   }
-  Header& h = cycle_.header;
+  PacketHeader& h = cycle_.header;
   if (cycle_.frames.empty()) h.acks = 0;  // from here on it counts by frame
   h.source = setting("SRC");
   h.destination = *destination;
@@ -265,7 +265,7 @@ bool Micromodem::CommandPing(const Fields& fields, TimeNs t) {
   const auto n = Numbers(fields, {kHighestAddress, kHighestAddress});
   if (!n || (*n)[1] == setting("SRC") || (*n)[1] == options_.broadcast) return false;
   Say({"CAMPC", fields[1], fields[2]});
-  Header h;
+  PacketHeader h;
   h.type = PacketType::kPing;
   h.source = setting("SRC");
   h.destination = (*n)[1];
@@ -289,7 +289,7 @@ bool Micromodem::CommandMini(const Fields& fields, TimeNs t) {
       static_cast<unsigned char>((*bytes)[0]) * 256 + static_cast<unsigned char>((*bytes)[1]);
   if (value > kLargestMini) return false;
   Say({"CAMUC", fields[1], fields[2], fields[3]});
-  Header h;
+  PacketHeader h;
   h.type = PacketType::kMini;
   h.source = setting("SRC");
   h.destination = *destination;
@@ -310,7 +310,7 @@ bool Micromodem::CommandFlexible(const Fields& fields, TimeNs t) {
   }
   flexible_id_ = flexible_id_ % 255 + 1;
   Say({"CATDP", "0", std::to_string(flexible_id_), fields[1], fields[2], fields[3], "0"});
-  Header h;
+  PacketHeader h;
   h.type = PacketType::kFlexible;
   h.source = setting("SRC");
   h.destination = *destination;

@@ -129,7 +129,7 @@ void Micromodem::Tick(TimeNs t) {
     revision_ = t + kRevisionPeriod;
   }
   while (!answers_.empty() && t >= answers_.front().due) {
-    const Header header = answers_.front().header;
+    const PacketHeader header = answers_.front().header;
     answers_.pop_front();
     TransmitNow(header, std::string(1, '\0'), 0);
   }

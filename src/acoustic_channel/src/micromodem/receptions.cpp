@@ -14,7 +14,8 @@ bool Psk(const PacketInfo& packet) {
 }
 
 /// The frames of a packet, in order.
-std::vector<std::string> Split(const Header& header, const std::vector<std::uint8_t>& payload) {
+std::vector<std::string> Split(const PacketHeader& header,
+                               const std::vector<std::uint8_t>& payload) {
   const std::size_t count = static_cast<std::size_t>(header.frames);
   std::string bytes(payload.begin(), payload.end());
   std::vector<std::size_t> lengths(count, static_cast<std::size_t>(header.frame_bytes));
@@ -59,8 +60,8 @@ void Micromodem::Handle(const ModemEvent& event) {
   }
 }
 
-Header Micromodem::HeaderOf(const ModemEvent& event) const {
-  Header h = Unpack(event.packet.header);
+PacketHeader Micromodem::HeaderOf(const ModemEvent& event) const {
+  PacketHeader h = Unpack(event.packet.header);
   if (h.type != PacketType::kPlain) return h;
   // The packet of an ordinary vehicle is a set of frames at its profile's rate.
   h.source = world_->AddressOf(event.packet.source);
@@ -73,14 +74,14 @@ Header Micromodem::HeaderOf(const ModemEvent& event) const {
   return h;
 }
 
-bool Micromodem::forMe(const Header& header) const {
+bool Micromodem::forMe(const PacketHeader& header) const {
   return header.destination == setting("SRC") || header.destination == options_.broadcast;
 }
 
 void Micromodem::OnReceptionEnd(const ModemEvent& event) {
   const DropReason reason = event.end.fate.reason;
   if (reason == DropReason::kLeft) return;
-  const Header header = HeaderOf(event);
+  const PacketHeader header = HeaderOf(event);
   if (reason != DropReason::kNone) {
     TellLoss(header, event);
     TellReception(header, event);
@@ -103,7 +104,7 @@ void Micromodem::OnReceptionEnd(const ModemEvent& event) {
       if (!forMe(header)) break;
       Say({"CAMPA", source, destination});
       if (header.destination == setting("SRC")) {
-        Header reply;
+        PacketHeader reply;
         reply.type = PacketType::kReply;
         reply.source = header.destination;
         reply.destination = header.source;
@@ -128,13 +129,13 @@ void Micromodem::OnReceptionEnd(const ModemEvent& event) {
   TellReception(header, event);
 }
 
-void Micromodem::TellCycle(const Header& header) {
+void Micromodem::TellCycle(const PacketHeader& header) {
   Say({"CACYC", std::to_string(header.poller_command), std::to_string(header.source),
        std::to_string(header.destination), std::to_string(header.rate),
        header.acks != 0 ? "1" : "0", std::to_string(header.frames)});
 }
 
-void Micromodem::TakeCycle(const Header& header, TimeNs t) {
+void Micromodem::TakeCycle(const PacketHeader& header, TimeNs t) {
   TellCycle(header);
   if (state_ != State::kIdle && state_ != State::kHeardCycle) return;
   cycle_ = {};
@@ -149,7 +150,7 @@ void Micromodem::TakeCycle(const Header& header, TimeNs t) {
   }
 }
 
-void Micromodem::TakeFrames(const Header& header, const ModemEvent& event) {
+void Micromodem::TakeFrames(const PacketHeader& header, const ModemEvent& event) {
   if (state_ == State::kHeardCycle) Enter(State::kIdle, kNever);
   const std::string source = std::to_string(header.source);
   const std::string destination = std::to_string(header.destination);
@@ -171,7 +172,7 @@ void Micromodem::TakeFrames(const Header& header, const ModemEvent& event) {
     }
   }
   if (header.acks == 0 || header.destination != setting("SRC")) return;
-  Header ack;
+  PacketHeader ack;
   ack.type = PacketType::kAck;
   ack.source = header.destination;
   ack.destination = header.source;
@@ -180,7 +181,7 @@ void Micromodem::TakeFrames(const Header& header, const ModemEvent& event) {
   answers_.push_back({event.t + world_->profile().turnaround(), ack});
 }
 
-void Micromodem::TakeReply(const Header& header, const ModemEvent& event) {
+void Micromodem::TakeReply(const PacketHeader& header, const ModemEvent& event) {
   if (header.destination != setting("SRC") || !ping_.open || header.source != ping_.destination) {
     return;
   }
@@ -194,7 +195,7 @@ void Micromodem::TakeReply(const Header& header, const ModemEvent& event) {
   Say({"CAMPR", std::to_string(header.source), std::to_string(header.destination), seconds});
 }
 
-void Micromodem::TakeAck(const Header& header) {
+void Micromodem::TakeAck(const PacketHeader& header) {
   if (header.destination != setting("SRC")) return;
   for (int k = 0; k < header.frames; ++k) {
     if ((header.acks >> k & 1) == 0) continue;
@@ -203,7 +204,7 @@ void Micromodem::TakeAck(const Header& header) {
   }
 }
 
-void Micromodem::TellLoss(const Header& header, const ModemEvent& event) {
+void Micromodem::TellLoss(const PacketHeader& header, const ModemEvent& event) {
   const bool data = header.type == PacketType::kData || header.type == PacketType::kFlexible;
   if (data && state_ == State::kHeardCycle) Enter(State::kIdle, kNever);
   if (event.end.fate.reason == DropReason::kHalfDuplex) {

@@ -26,7 +26,7 @@ PacketKind KindOf(PacketType type) {
 }
 
 /// Mini-packets contain 13 bits and count as two bytes.
-bool Mini(const Header& header) {
+bool Mini(const PacketHeader& header) {
   return header.type != PacketType::kData && header.type != PacketType::kFlexible;
 }
 
@@ -35,7 +35,7 @@ bool Automatic(PacketType type) { return type == PacketType::kReply || type == P
 }  // namespace
 
 void Micromodem::AskForFrame(TimeNs t) {
-  const Header& h = cycle_.header;
+  const PacketHeader& h = cycle_.header;
   Enter(State::kDataRequest, t + std::max(1, setting("DTO")) * kSecondNs);
   Say({"CADRQ", FormatUtc(Utc(t), "%H%M%S"), std::to_string(h.source),
        std::to_string(h.destination), h.acks != 0 ? "1" : "0",
@@ -48,7 +48,7 @@ void Micromodem::SendFrames(TimeNs t) {
     TellTransmission(cycle_.header, PacketInfo(), 4, t);
     return Enter(State::kIdle, kNever);
   }
-  Header header = cycle_.header;
+  PacketHeader header = cycle_.header;
   header.type = PacketType::kData;
   header.frames = static_cast<int>(frames.size());
   header.frame_bytes = static_cast<int>(frames.front().size());
@@ -68,13 +68,13 @@ void Micromodem::SendFrames(TimeNs t) {
   Transmit(header, payload, air_bytes, t);
 }
 
-void Micromodem::Transmit(const Header& header, const std::string& payload, std::size_t air_bytes,
-                          TimeNs t) {
+void Micromodem::Transmit(const PacketHeader& header, const std::string& payload,
+                          std::size_t air_bytes, TimeNs t) {
   if (setting("SNV") != 1) return TransmitNow(header, payload, air_bytes);
   synchronous_ = {NextSecond(t), header, payload, air_bytes};
 }
 
-void Micromodem::TransmitNow(const Header& header, const std::string& payload,
+void Micromodem::TransmitNow(const PacketHeader& header, const std::string& payload,
                              std::size_t air_bytes) {
   const bool data = !Mini(header);
   Transmission packet;
@@ -90,7 +90,7 @@ void Micromodem::TransmitNow(const Header& header, const std::string& payload,
 }
 
 void Micromodem::OnSent(const PacketInfo& packet, TimeNs t) {
-  const Header header = Unpack(packet.header);
+  const PacketHeader header = Unpack(packet.header);
   Say({"CATXP", std::to_string(Mini(header) ? 2 : packet.bytes)});
   if (header.type == PacketType::kPing) {
     ping_.sent = t;
@@ -99,7 +99,7 @@ void Micromodem::OnSent(const PacketInfo& packet, TimeNs t) {
 }
 
 void Micromodem::OnSendEnd(const PacketInfo& packet, TimeNs t) {
-  const Header header = Unpack(packet.header);
+  const PacketHeader header = Unpack(packet.header);
   Say({"CATXF", std::to_string(Mini(header) ? 2 : packet.bytes)});
   if (Automatic(header.type)) return;
   if (header.type != PacketType::kPing) TellTransmission(header, packet, 0, t);

@@ -32,7 +32,7 @@ std::string Whole(double value) { return std::to_string(std::lround(value)); }
 
 }  // namespace
 
-void Micromodem::TellReception(const Header& header, const ModemEvent& event) {
+void Micromodem::TellReception(const PacketHeader& header, const ModemEvent& event) {
   const PacketFate& fate = event.end.fate;
   if (setting("TOA") == 1 && fate.reason == DropReason::kNone) {
     Say({"CATOA", FormatUtc(Utc(fate.begin), "%H%M%S", 4), std::to_string(clock_mode())});
@@ -86,7 +86,7 @@ void Micromodem::TellReception(const Header& header, const ModemEvent& event) {
   Say(fields);
 }
 
-void Micromodem::TellTransmission(const Header& header, const PacketInfo& packet, int mode,
+void Micromodem::TellTransmission(const PacketHeader& header, const PacketInfo& packet, int mode,
                                   TimeNs t) {
   if (setting("XST") == 0) return;
   const bool data = header.type == PacketType::kData || header.type == PacketType::kFlexible;

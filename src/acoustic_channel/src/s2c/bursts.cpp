@@ -29,7 +29,7 @@ void S2cModem::HeedSettings() {
   connection_.Heed(s);
 }
 
-std::string S2cModem::SendBurst(const Header& header, const std::string& payload, TimeNs t) {
+std::string S2cModem::SendBurst(const PacketHeader& header, const std::string& payload, TimeNs t) {
   if (WrongDestination(header.destination, false)) return "ERROR WRONG DESTINATION ADDRESS";
   HeedSettings();
   return connection_.Add(header.destination, header.pid, payload, t);
@@ -95,7 +95,7 @@ void S2cModem::LaunchBurst(TimeNs t) {
   world_->Send(packet);
 }
 
-void S2cModem::TakeConnectionPacket(const Header& header, const ModemEvent& event) {
+void S2cModem::TakeConnectionPacket(const PacketHeader& header, const ModemEvent& event) {
   HeedSettings();
   const auto answer = [&](MessageType type) {
     Ack ack;
@@ -142,7 +142,7 @@ void S2cModem::TakeConnectionPacket(const Header& header, const ModemEvent& even
   }
 }
 
-void S2cModem::TellBurst(const Header& header, const ModemEvent& event) {
+void S2cModem::TellBurst(const PacketHeader& header, const ModemEvent& event) {
   ++received_count_;
   const std::string payload(event.payload.begin(), event.payload.end());
   if (header.raw && reader_.mode() == Reader::Mode::kData) {

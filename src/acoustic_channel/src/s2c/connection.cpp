@@ -171,7 +171,7 @@ bool Connection::TakeAccept(int source, TimeNs t) {
   return true;
 }
 
-bool Connection::TakeBurst(const Header& header, TimeNs t, bool* fresh) {
+bool Connection::TakeBurst(const PacketHeader& header, TimeNs t, bool* fresh) {
   if (state_ != State::kOnline || header.source != peer_) return false;
   active_ = t;
   *fresh = header.number != heard_;
@@ -180,7 +180,7 @@ bool Connection::TakeBurst(const Header& header, TimeNs t, bool* fresh) {
   return true;
 }
 
-void Connection::TakeBurstAck(const Header& header, TimeNs t) {
+void Connection::TakeBurstAck(const PacketHeader& header, TimeNs t) {
   const bool mine = state_ == State::kOnline && header.source == peer_ &&
                     step_ == Step::kAwaiting && type_ == MessageType::kBurst &&
                     header.number == number_;

@@ -36,7 +36,7 @@ void S2cModem::Send(const Item& item, TimeNs t) {
   std::vector<std::string> fields = Split(item.text);
   const std::string name = fields[0];
   fields.erase(fields.begin());
-  Header header;
+  PacketHeader header;
   header.source = settings_.at("AL");
   header.pid = settings_.at("PID");
   if (fields[0][0] == 'p') {
@@ -75,8 +75,8 @@ void S2cModem::Send(const Item& item, TimeNs t) {
   Launch(t);
 }
 
-std::string S2cModem::SendIm(Header header, const std::string& payload, const std::string& flag,
-                             TimeNs /*t*/) {
+std::string S2cModem::SendIm(PacketHeader header, const std::string& payload,
+                             const std::string& flag, TimeNs /*t*/) {
   header.type = MessageType::kIm;
   if (flag == "ack") {
     header.flag = Flag::kAck;
@@ -99,8 +99,8 @@ std::string S2cModem::SendIm(Header header, const std::string& payload, const st
   return "OK";
 }
 
-std::string S2cModem::SendIms(Header header, const std::string& payload, const std::string& clock,
-                              TimeNs t) {
+std::string S2cModem::SendIms(PacketHeader header, const std::string& payload,
+                              const std::string& clock, TimeNs t) {
   header.type = MessageType::kIms;
   if (WrongDestination(header.destination, true)) return "ERROR WRONG DESTINATION ADDRESS";
   const auto start_us = WholeNumber(clock);
@@ -116,7 +116,7 @@ std::string S2cModem::SendIms(Header header, const std::string& payload, const s
   return "OK";
 }
 
-std::string S2cModem::SendPbm(const Header& header, const std::string& payload) {
+std::string S2cModem::SendPbm(const PacketHeader& header, const std::string& payload) {
   if (WrongDestination(header.destination, false)) return "ERROR WRONG DESTINATION ADDRESS";
   if (!piggyback_.emplace(header.destination, payload).second) return kBusy;
   return "OK";
@@ -164,7 +164,7 @@ void S2cModem::LaunchAck(TimeNs t) {
 }
 
 void S2cModem::GiveUp(const std::string& word) {
-  const Header header = message_->header;
+  const PacketHeader header = message_->header;
   message_.reset();
   const std::string address = std::to_string(header.destination);
   if (header.flag == Flag::kAck && word != "CANCELED") delivery_ = word + "," + address;

@@ -13,7 +13,7 @@ constexpr int kBest = 999;
 
 std::uint32_t Microseconds(TimeNs t) { return static_cast<std::uint32_t>((t + 500) / 1000); }
 
-const char* TypeName(const Header& h) {
+const char* TypeName(const PacketHeader& h) {
   switch (h.type) {
     case MessageType::kPlain:
     case MessageType::kIm:
@@ -81,14 +81,14 @@ void S2cModem::OnSent(const PacketInfo& packet, TimeNs t) {
     message_->airtime = packet.transmit_end - packet.transmit;
   }
   if (settings_.at("ZX") == 0) return;
-  const Header h = Unpack(packet.header);
+  const PacketHeader h = Unpack(packet.header);
   Notify(Join({"SENDSTART", std::to_string(h.destination), TypeName(h),
                std::to_string(Microseconds(packet.transmit_end - packet.transmit)), "0"}));
 }
 
 void S2cModem::OnSendEnd(const PacketInfo& packet, TimeNs t) {
   sending_ = false;
-  const Header h = Unpack(packet.header);
+  const PacketHeader h = Unpack(packet.header);
   if (settings_.at("ZX") != 0) {
     Notify(Join({"SENDEND", std::to_string(h.destination), TypeName(h),
                  std::to_string(ClockUs(packet.transmit)),
@@ -112,8 +112,8 @@ void S2cModem::OnSendEnd(const PacketInfo& packet, TimeNs t) {
   LaunchBurst(t);
 }
 
-Header S2cModem::HeaderOf(const PacketInfo& packet) const {
-  Header h = Unpack(packet.header);
+PacketHeader S2cModem::HeaderOf(const PacketInfo& packet) const {
+  PacketHeader h = Unpack(packet.header);
   if (h.type != MessageType::kPlain) return h;
   h.source = world_->AddressOf(packet.source);
   h.destination =
@@ -161,7 +161,7 @@ void S2cModem::OnReceptionEnd(const ModemEvent& event) {
                  std::to_string(measured_.integrity)}));
   }
   if (kind == PacketKind::kPing || kind == PacketKind::kReply) return;
-  const Header header = HeaderOf(event.packet);
+  const PacketHeader header = HeaderOf(event.packet);
   const bool mine = header.destination == settings_.at("AL");
   if (header.type == MessageType::kAck) {
     if (mine) TakeAck(header, event);
@@ -172,7 +172,7 @@ void S2cModem::OnReceptionEnd(const ModemEvent& event) {
   }
 }
 
-void S2cModem::TakeMessage(const Header& header, const ModemEvent& event) {
+void S2cModem::TakeMessage(const PacketHeader& header, const ModemEvent& event) {
   const bool mine = header.destination == settings_.at("AL");
   const bool wanted = mine || header.destination == options_.broadcast || settings_.at("RP") != 0;
   if (!wanted) return;
@@ -200,7 +200,7 @@ void S2cModem::TakeMessage(const Header& header, const ModemEvent& event) {
   acks_.push_back(ack);
 }
 
-void S2cModem::TakeAck(const Header& header, const ModemEvent& event) {
+void S2cModem::TakeAck(const PacketHeader& header, const ModemEvent& event) {
   if (header.piggyback) {
     const std::string payload(event.payload.begin(), event.payload.end());
     std::string length = std::to_string(payload.size());

@@ -17,7 +17,7 @@ enum class PacketType : std::uint8_t {
   kLbl,  ///< a sound of LBL ranging, with a header of its own (LblSound)
 };
 
-struct Header {
+struct PacketHeader {
   PacketType type = PacketType::kPlain;
   int source = 0, destination = 0;  ///< addresses, 0 to 127
   int rate = 0;
@@ -29,7 +29,7 @@ struct Header {
   int poller_command = 0;  ///< of kCycle: the unused field of CCCYC, 0 to 15
 };
 
-inline std::uint64_t Pack(const Header& h) {
+inline std::uint64_t Pack(const PacketHeader& h) {
   const auto put = [](std::uint64_t value, int bits, int at) {
     return (value & ((std::uint64_t{1} << bits) - 1)) << at;
   };
@@ -41,11 +41,11 @@ inline std::uint64_t Pack(const Header& h) {
          put(number(h.poller_command), 4, 47);
 }
 
-inline Header Unpack(std::uint64_t bits) {
+inline PacketHeader Unpack(std::uint64_t bits) {
   const auto take = [bits](int count, int at) {
     return static_cast<int>(bits >> at & ((std::uint64_t{1} << count) - 1));
   };
-  Header h;
+  PacketHeader h;
   h.type = static_cast<PacketType>(take(4, 0));
   h.source = take(7, 4);
   h.destination = take(7, 11);

@@ -63,19 +63,19 @@ class Micromodem : public ModemEngine {
  private:
   /// The frames that the modem requests from the host.
   struct Cycle {
-    Header header;
+    PacketHeader header;
     int wanted = 0;
     std::vector<std::string> frames;
   };
   /// A packet that the modem sends by itself after its turnaround.
   struct Answer {
     TimeNs due = 0;
-    Header header;
+    PacketHeader header;
   };
   /// A packet that leaves at a full second (SNV).
   struct Synchronous {
     TimeNs due = 0;
-    Header header;
+    PacketHeader header;
     std::string payload;
     std::size_t air_bytes = 0;
   };
@@ -131,25 +131,26 @@ class Micromodem : public ModemEngine {
   void AskForFrame(TimeNs t);
   void SendFrames(TimeNs t);
   /// At once, or with SNV at the next full second.
-  void Transmit(const Header& header, const std::string& payload, std::size_t air_bytes, TimeNs t);
-  void TransmitNow(const Header& header, const std::string& payload, std::size_t air_bytes);
+  void Transmit(const PacketHeader& header, const std::string& payload, std::size_t air_bytes,
+                TimeNs t);
+  void TransmitNow(const PacketHeader& header, const std::string& payload, std::size_t air_bytes);
   void OnSent(const PacketInfo& packet, TimeNs t);
   void OnSendEnd(const PacketInfo& packet, TimeNs t);
 
   // receptions.cpp
   void OnReceptionEnd(const ModemEvent& event);
-  Header HeaderOf(const ModemEvent& event) const;
-  void TellCycle(const Header& header);
-  void TakeCycle(const Header& header, TimeNs t);
-  void TakeFrames(const Header& header, const ModemEvent& event);
-  void TakeReply(const Header& header, const ModemEvent& event);
-  void TakeAck(const Header& header);
-  void TellLoss(const Header& header, const ModemEvent& event);
-  bool forMe(const Header& header) const;
+  PacketHeader HeaderOf(const ModemEvent& event) const;
+  void TellCycle(const PacketHeader& header);
+  void TakeCycle(const PacketHeader& header, TimeNs t);
+  void TakeFrames(const PacketHeader& header, const ModemEvent& event);
+  void TakeReply(const PacketHeader& header, const ModemEvent& event);
+  void TakeAck(const PacketHeader& header);
+  void TellLoss(const PacketHeader& header, const ModemEvent& event);
+  bool forMe(const PacketHeader& header) const;
 
   // statistics.cpp
-  void TellReception(const Header& header, const ModemEvent& event);
-  void TellTransmission(const Header& header, const PacketInfo& packet, int mode, TimeNs t);
+  void TellReception(const PacketHeader& header, const ModemEvent& event);
+  void TellTransmission(const PacketHeader& header, const PacketInfo& packet, int mode, TimeNs t);
 
   ModemOptions options_;
   ModemSurroundings* world_;

@@ -35,7 +35,7 @@ class Connection {
  public:
   enum class State { kOffline, kEstablish, kOnline, kBackoff };
   struct Outgoing {
-    Header header;
+    PacketHeader header;
     std::string payload;
   };
 
@@ -70,8 +70,8 @@ class Connection {
   bool TakeAccept(int source, TimeNs t);
   void SetPropagation(std::uint32_t us) { propagation_us_ = us; }
   /// A burst has arrived. True: acknowledge it; `fresh`: it is not a repetition.
-  bool TakeBurst(const Header& header, TimeNs t, bool* fresh);
-  void TakeBurstAck(const Header& header, TimeNs t);
+  bool TakeBurst(const PacketHeader& header, TimeNs t, bool* fresh);
+  void TakeBurstAck(const PacketHeader& header, TimeNs t);
   void TakeClose(int source);
   /// When the packet under way began and ended to leave, for ranging.
   TimeNs began() const { return began_; }

@@ -20,7 +20,7 @@ enum class MessageType : std::uint8_t {
 
 enum class Flag : std::uint8_t { kNoack, kAck, kForce };
 
-struct Header {
+struct PacketHeader {
   MessageType type = MessageType::kPlain;
   Flag flag = Flag::kNoack;
   int source = 0, destination = 0;   ///< addresses
@@ -31,7 +31,7 @@ struct Header {
   std::uint32_t propagation_us = 0;  ///< of kBurst: as its sender measured it, 23 bits
 };
 
-inline std::uint64_t Pack(const Header& h) {
+inline std::uint64_t Pack(const PacketHeader& h) {
   return static_cast<std::uint64_t>(h.type) | static_cast<std::uint64_t>(h.flag) << 4 |
          static_cast<std::uint64_t>(h.piggyback ? 1 : 0) << 7 |
          static_cast<std::uint64_t>(h.source & 0xff) << 8 |
@@ -42,8 +42,8 @@ inline std::uint64_t Pack(const Header& h) {
          static_cast<std::uint64_t>(h.raw ? 1 : 0) << 63;
 }
 
-inline Header Unpack(std::uint64_t bits) {
-  Header h;
+inline PacketHeader Unpack(std::uint64_t bits) {
+  PacketHeader h;
   h.type = static_cast<MessageType>(bits & 0xf);
   h.flag = static_cast<Flag>(bits >> 4 & 0x7);
   h.piggyback = (bits >> 7 & 1) != 0;

@@ -55,7 +55,7 @@ class S2cModem : public ModemEngine {
   struct Message {
     enum class Step { kWaiting, kOffered, kSending, kAwaitingAck };
     Step step = Step::kWaiting;
-    Header header;
+    PacketHeader header;
     std::string payload;
     int retries_left = 0;
     std::uint32_t tag = 0;
@@ -65,7 +65,7 @@ class S2cModem : public ModemEngine {
     TimeNs start = 0;
   };
   struct Ack {
-    Header header;
+    PacketHeader header;
     TimeNs due = 0;
     std::uint32_t tag = 0;  ///< 0: not given to the network
   };
@@ -99,10 +99,11 @@ class S2cModem : public ModemEngine {
 
   // messages.cpp
   void Send(const Item& item, TimeNs t);
-  std::string SendIm(Header header, const std::string& payload, const std::string& flag, TimeNs t);
-  std::string SendIms(Header header, const std::string& payload, const std::string& clock,
+  std::string SendIm(PacketHeader header, const std::string& payload, const std::string& flag,
+                     TimeNs t);
+  std::string SendIms(PacketHeader header, const std::string& payload, const std::string& clock,
                       TimeNs t);
-  std::string SendPbm(const Header& header, const std::string& payload);
+  std::string SendPbm(const PacketHeader& header, const std::string& payload);
   bool WrongDestination(int address, bool broadcast) const;
   void Launch(TimeNs t);
   void LaunchAck(TimeNs t);
@@ -110,22 +111,22 @@ class S2cModem : public ModemEngine {
   void DropMessages(bool tell);
 
   // bursts.cpp
-  std::string SendBurst(const Header& header, const std::string& payload, TimeNs t);
+  std::string SendBurst(const PacketHeader& header, const std::string& payload, TimeNs t);
   bool ControlConnection(const std::string& text, TimeNs t);
   void TakeRaw(const std::string& bytes, TimeNs t);
   void HeedSettings();
   void LaunchBurst(TimeNs t);
-  void TakeConnectionPacket(const Header& header, const ModemEvent& event);
-  void TellBurst(const Header& header, const ModemEvent& event);
+  void TakeConnectionPacket(const PacketHeader& header, const ModemEvent& event);
+  void TellBurst(const PacketHeader& header, const ModemEvent& event);
 
   // receptions.cpp
   void OnSent(const PacketInfo& packet, TimeNs t);
   void OnSendEnd(const PacketInfo& packet, TimeNs t);
   void OnReceptionEnd(const ModemEvent& event);
   void Measure(const ModemEvent& event, bool failed);
-  void TakeMessage(const Header& header, const ModemEvent& event);
-  void TakeAck(const Header& header, const ModemEvent& event);
-  Header HeaderOf(const PacketInfo& packet) const;
+  void TakeMessage(const PacketHeader& header, const ModemEvent& event);
+  void TakeAck(const PacketHeader& header, const ModemEvent& event);
+  PacketHeader HeaderOf(const PacketInfo& packet) const;
   std::string Signal() const;
 
   ModemOptions options_;
