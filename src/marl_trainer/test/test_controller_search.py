@@ -3,6 +3,7 @@
 import csv
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -78,6 +79,15 @@ class Tune(unittest.TestCase):
         (self.folder / "evaluate").write_text("#!/bin/false\n")
         self.assertEqual(self.run_tune(trials=5).returncode, 0)
         self.assertEqual(self.trials(), first)
+
+    def test_a_search_goes_on_without_the_folder_of_its_flights(self):
+        self.run_tune(trials=5)
+        first = self.trials()
+        shutil.rmtree(self.folder / "out" / "work")
+        self.assertEqual(self.run_tune(trials=6).returncode, 0)
+        self.assertEqual(self.trials()[:5], first)
+        flown = list((self.folder / "out" / "work" / "flights").glob("*.csv"))
+        self.assertEqual(len(flown), 1)
 
     def test_the_best_fly_again_on_other_episodes(self):
         # From the second seed on, the return of every episode has another peak: gain 4.

@@ -152,6 +152,38 @@ class Tune(unittest.TestCase):
         self.assertEqual(self.tune().returncode, 0)
         self.assertEqual(stub_programs.calls(self.folder), [])
 
+    def test_a_search_goes_on_without_the_folder_of_its_runs(self):
+        self.assertEqual(self.tune("--algorithms", "mappo").returncode, 0)
+        self.assertEqual(len(stub_programs.calls(self.folder)), 8)
+        out = os.path.join(self.folder, "out")
+        with open(os.path.join(out, "trials.csv"), encoding="utf-8") as file:
+            before = file.read()
+        shutil.rmtree(os.path.join(out, "work"))
+        self.assertEqual(self.tune("--algorithms", "mappo").returncode, 0)
+        self.assertEqual(stub_programs.calls(self.folder), [])
+        with open(os.path.join(out, "trials.csv"), encoding="utf-8") as file:
+            self.assertEqual(file.read(), before)
+        self.assertEqual(self.tune().returncode, 0)
+        calls = stub_programs.calls(self.folder)
+        self.assertEqual(len(calls), 8)
+        self.assertTrue(all("--algorithm masac" in call for call in calls))
+        with open(self.search, "a", encoding="utf-8") as file:
+            file.write("preset: full\n")
+        self.tune("--algorithms", "mappo")
+        self.assertEqual(len(stub_programs.calls(self.folder)), 8, "other options are other runs")
+
+    def test_a_damaged_file_of_results_is_refused_in_one_line(self):
+        path = os.path.join(self.folder, "out", "finished.json")
+        os.makedirs(os.path.dirname(path))
+        for content, what in (
+            ("[]", "is not an object"), ('{"a": {"return": "high"}}', "return: is not a finite number"), ("{", "is not JSON"),
+        ):  # fmt: skip
+            with open(path, "w", encoding="utf-8") as file:
+                file.write(content)
+            done = self.tune()
+            self.assertEqual(done.returncode, 2, done.stdout)
+            self.assertRegex(done.stdout.splitlines()[-1], f"^tune: .*finished.json.*{re.escape(what)}")
+
     def test_the_table_has_the_digits_that_the_choice_was_made_from(self):
         scores = [search.Score(value, 0.0, 0.0, 1.0) for value in (1000.01, 1000.02, 1000.04, 1000.03)]
         with mock.patch.object(search, "score_of", lambda score: score):

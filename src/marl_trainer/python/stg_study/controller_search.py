@@ -16,6 +16,7 @@ import random
 from stg_common.files import Damaged
 from stg_study.collect import csv_text
 from stg_study.files import write_atomically
+from stg_study.finished import Finished
 from stg_study.jobs import Flight
 from stg_study.runner import Runner
 from stg_study.study import StudyError
@@ -165,24 +166,34 @@ def _jobs(search, policy, work, bin_dir):
     return jobs
 
 
-def _fly(search, values, work, bin_dir, parallel):
-    """Returns (score, means of the scored metrics over all cells)."""
-    jobs = _jobs(search, text_of(search["controller"], values), work, bin_dir)
-    if not all(job.complete() for job in jobs):
-        runner = Runner([], jobs, parallel, io.StringIO())
+def _results(jobs, parallel, finished):
+    """The metrics of each job as evaluate reports them. Flies what is neither flown nor kept."""
+    waiting = [job for job in jobs if finished.find(job.words()) is None and not job.complete()]
+    if waiting:
+        runner = Runner([], waiting, parallel, io.StringIO())
         if not runner.run():
             raise Interrupted
         if runner.failed:
             raise StudyError(runner.failed[0])
-    found = [job.summary() for job in jobs]
+    return [finished.find(job.words()) or job.summary() for job in jobs]
+
+
+def _fly(search, values, places, parallel):
+    """Returns (score, means of the scored metrics over all cells)."""
+    work, bin_dir, finished = places
+    jobs = _jobs(search, text_of(search["controller"], values), work, bin_dir)
+    found = _results(jobs, parallel, finished)
     unknown = [name for name in search["score"] if not all(is_number(cell.get(name)) for cell in found)]
     if unknown:
         raise StudyError(f"score: evaluate does not report {', '.join(unknown)}")
+    for job, cell in zip(jobs, found):
+        if finished.find(job.words()) is None:
+            finished.add(job.words(), {name: cell[name] for name in search["score"]})
     means = {name: sum(cell[name] for cell in found) / len(found) for name in search["score"]}
     return sum(weight * means[name] for name, weight in search["score"].items()), means
 
 
-def _trials(search, work, bin_dir, parallel):
+def _trials(search, places, parallel):
     """Flies the search; yields (trial, score, means, constants) of each trial."""
     rng = random.Random(search["draws"])
     best = None
@@ -196,7 +207,7 @@ def _trials(search, work, bin_dir, parallel):
             values = draw(search["space"], None, 0.0, rng)
         else:
             values = draw(search["space"], best[1], first * (last / first) ** progress, rng)
-        score, means = _fly(search, values, work, bin_dir, parallel)
+        score, means = _fly(search, values, places, parallel)
         if best is None or score > best[0]:
             best = (score, values)
             print(f"trial {trial}: {score:.4f} {text_of(search['controller'], values)}", flush=True)
@@ -215,7 +226,7 @@ def _write(search, out, name, rows):
     write_atomically(os.path.join(out, name), csv_text(header, rows))
 
 
-def _finals(search, trials, out, work, bin_dir, parallel):
+def _finals(search, trials, out, places, parallel):
     """Flies the best trials and the first one again. Writes OUT/finals.csv, the best one first."""
     again = dict(search, episodes=search["finals"]["episodes"], seed=search["finals"]["seed"])
     order = sorted(trials, key=lambda one: -one[1])[: search["finals"]["trials"]]
@@ -223,7 +234,7 @@ def _finals(search, trials, out, work, bin_dir, parallel):
         order.append(trials[0])
     flown = []
     for trial, _, _, values in order:
-        score, means = _fly(again, values, work, bin_dir, parallel)
+        score, means = _fly(again, values, places, parallel)
         flown.append((trial, score, means, values))
         ranked = sorted(flown, key=lambda one: -one[1])
         _write(search, out, "finals.csv", [_row(search, *one) for one in ranked])
@@ -235,12 +246,13 @@ def _finals(search, trials, out, work, bin_dir, parallel):
 def run_search(search, out, work, bin_dir, parallel):
     """Flies the search. Writes OUT/trials.csv, with one row per trial in the order of the flights, and
     OUT/finals.csv."""
+    places = (work, bin_dir, Finished(out))
     trials = []
-    for one in _trials(search, work, bin_dir, parallel):
+    for one in _trials(search, places, parallel):
         trials.append(one)
         _write(search, out, "trials.csv", [_row(search, *each) for each in trials])
     cells = len(search["scenarios"]) * len(search["conditions"])
     episodes = search["trials"] * search["episodes"]
     if search["finals"]:
-        episodes += _finals(search, trials, out, work, bin_dir, parallel)
+        episodes += _finals(search, trials, out, places, parallel)
     print(f"{search['trials']} trials, {episodes * cells} episodes")

@@ -183,6 +183,10 @@ class Flight:
         self._program = os.path.join(bin_dir, "evaluate")
         self._is_file, self._block = is_file, block
 
+    def words(self):
+        """The policy and the options, in the order of a command line."""
+        return [self.policy, *self.arguments]
+
     def _identity(self):
         """Everything that the result depends on: the options and the policy's content."""
         return {

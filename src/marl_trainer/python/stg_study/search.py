@@ -12,6 +12,7 @@ import yaml
 from stg_common.files import Damaged
 from stg_common.yaml_files import read_yaml
 from stg_study.files import write_atomically
+from stg_study.finished import Finished
 from stg_study.jobs import Training
 from stg_study.collect import csv_text
 from stg_study.statistics import final_stage, mean_std
@@ -113,8 +114,41 @@ def trials_of(search, algorithm):
     return [{}] + drawn
 
 
-def plan_search(search, algorithms, work, bin_dir):
-    """Returns {algorithm: [[Training]]}: for each trial, one training per seed."""
+class SearchedTraining(Training):
+    """A training of a search. Its results are kept, so it is done even where its folder is missing."""
+
+    def __init__(self, finished, *arguments):
+        super().__init__(*arguments)
+        self._finished = finished
+
+    def _kept(self):
+        return None if os.path.isdir(self.folder) else self._finished.find(self.arguments)
+
+    def complete(self):
+        """True if the run reached its last step here, or if its results are kept."""
+        return self._kept() is not None or super().complete()
+
+    def score(self):
+        """(return, lost rate, wall seconds) of the finished training. Keeps them."""
+        kept = self._kept()
+        if kept is None:
+            rows = self.validations()
+            if not rows:
+                raise Damaged(self.progress_file, "contains no validation")
+            rows = final_stage(rows)
+            kept = {
+                "return": sum(row["validation_return"] for row in rows) / len(rows),
+                "lost_rate": sum(row["validation_lost_rate"] for row in rows) / len(rows),
+                "wall_seconds": rows[-1]["wall_seconds"],
+            }
+            if kept != self._finished.find(self.arguments):
+                self._finished.add(self.arguments, kept)
+        return kept["return"], kept["lost_rate"], kept["wall_seconds"]
+
+
+def plan_search(search, algorithms, out, work, bin_dir):
+    """Returns {algorithm: [[SearchedTraining]]}: for each trial, one training per seed."""
+    finished = Finished(out)
     study = Study(
         name="search",
         title="",
@@ -130,7 +164,8 @@ def plan_search(search, algorithms, work, bin_dir):
     return {
         algorithm: [
             [
-                Training(
+                SearchedTraining(
+                    finished,
                     study,
                     study.scenarios[0],
                     Method(f"{algorithm}_{k}", "", train={"algorithm": algorithm, **fixed.get(algorithm, {}), **options}),
@@ -157,24 +192,12 @@ class Score:
     wall_seconds: float  # of one training
 
 
-def _training_score(training):
-    """(return, lost rate, wall seconds) of a finished training."""
-    rows = training.validations()
-    if not rows:
-        raise Damaged(training.progress_file, "contains no validation")
-    rows = final_stage(rows)
-    return (
-        sum(row["validation_return"] for row in rows) / len(rows),
-        sum(row["validation_lost_rate"] for row in rows) / len(rows),
-        rows[-1]["wall_seconds"],
-    )
-
-
 def score_of(trainings):
-    """Score of a trial, or None if a training is not finished."""
-    if not all(training.complete() for training in trainings):
+    """Score of a trial, or None if a training is not finished. Keeps the results of those that are."""
+    done = [training.score() for training in trainings if training.complete()]
+    if len(done) < len(trainings):
         return None
-    returns, lost, seconds = zip(*map(_training_score, trainings))
+    returns, lost, seconds = zip(*done)
     value, std = mean_std(returns)
     return Score(value, std or 0.0, sum(lost) / len(lost), sum(seconds) / len(seconds))
 
