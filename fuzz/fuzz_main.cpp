@@ -23,10 +23,24 @@ const stg::fuzz::Target& Wanted() {
   std::exit(2);
 }
 
+/// Counts the bytes of all inputs and prints the sum when the program ends.
+class Bytes {
+ public:
+  ~Bytes() {
+    std::fprintf(stderr, "stat::input_bytes: %llu\n", static_cast<unsigned long long>(sum_));
+  }
+  void Add(std::size_t size) { sum_ += size; }
+
+ private:
+  std::uint64_t sum_ = 0;
+};
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const stg::fuzz::Target& target = Wanted();
+  static Bytes bytes;
+  bytes.Add(size);
   target.run(std::string(reinterpret_cast<const char*>(data), size));
   return 0;
 }

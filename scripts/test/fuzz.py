@@ -75,8 +75,10 @@ def run(target, options):
                                 env=environment).returncode  # fmt: skip
     text = log.read_text(encoding="utf-8", errors="replace")
     counted = re.findall(r"stat::number_of_executed_units: ([0-9]+)", text)
+    size = re.findall(r"stat::input_bytes: ([0-9]+)", text)
     found = sorted(set(findings.iterdir()) - known)
-    print(f"{target}: {counted[-1] if counted else '?'} inputs, {len(found)} findings", flush=True)
+    print(f"{target}: {counted[-1] if counted else '?'} inputs, {size[-1] if size else '?'} bytes, "
+          f"{len(found)} findings", flush=True)  # fmt: skip
     for path in found:
         print(f"  {path}\n  again: STG_FUZZ_TARGET={target} {program} {path}", flush=True)
     if status != 0 and not found:

@@ -8,16 +8,11 @@
 #include "acoustic_channel/modem/packet.hpp"
 #include "acoustic_channel/water/sound_speed.hpp"
 #include "stg_agent/localization/joint_filter.hpp"
+#include "stg_agent/localization/measured_ranges.hpp"
 #include "stg_agent/localization/own_way.hpp"
 #include "told_ways.hpp"
 
 namespace stg::agent {
-
-/// Mean of 1/c [s/m] over the depths between two positions.
-inline double SlownessBetween(const acoustics::SoundSpeedProfile& sound, double surface_z_m,
-                              const Vec3<double>& a, const Vec3<double>& b) {
-  return sound.MeanSlowness(std::max(0.0, surface_z_m - a.z), std::max(0.0, surface_z_m - b.z));
-}
 
 /// Keeps ranges by pings, own ones and those in packets, until the positions of both members at
 /// that time are known: those of others after a later packet, the own one at the next decision.

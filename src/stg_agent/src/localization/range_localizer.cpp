@@ -12,6 +12,7 @@
 #include "member_models.hpp"
 #include "ping_ranges.hpp"
 #include "stg_agent/localization/joint_filter.hpp"
+#include "stg_agent/localization/measured_ranges.hpp"
 #include "stg_agent/localization/own_way.hpp"
 #include "told_ways.hpp"
 
@@ -54,7 +55,7 @@ class RangeLocalizer : public Localizer {
         filter_(s.localization, s.navigation.start_std_m, s.run.agents, AnchorsOf(s), self,
                 clocks_),
         ways_(static_cast<std::size_t>(s.run.agents + s.stations.count())),
-        newest_(ways_.size()),
+        measured_(s.run.agents, s.run.agents + s.stations.count()),
         own_way_(s.run),
         taken_(kMostTaken),
         pings_(s.pings_members()),
@@ -67,7 +68,7 @@ class RangeLocalizer : public Localizer {
   void Reset() override {
     filter_.Clear();
     for (ToldWay& way : ways_) way.Clear();
-    std::fill(newest_.begin(), newest_.end(), ToldRange());
+    measured_.Clear();
     std::fill(taken_.begin(), taken_.end(), Taken());
     pending_.clear();
     by_ping_.Clear();
@@ -120,9 +121,7 @@ class RangeLocalizer : public Localizer {
     pending_.clear();
     by_ping_.Give(now - kOldest, own_way_, ways_, sound_, surface_z_m_,
                   [this, now](const RangeReading& z) {
-                    if (z.receiver == self_) {
-                      newest_[static_cast<std::size_t>(z.source)] = {z.source, z.at, z.range_m};
-                    }
+                    if (z.receiver == self_) measured_.Add({z.source, z.at, z.range_m});
                     Take(now, z);
                   });
   }
@@ -157,13 +156,7 @@ class RangeLocalizer : public Localizer {
     packet->adrift = adrift_;
     packet->ranges.clear();
     if (fixes_.Tell(packet)) return;  // a fix uses the space of the ranges
-    // A range to a station, if one was received, and a range to an AUV. The choice changes from
-    // packet to packet.
-    const auto stations = static_cast<int>(newest_.size()) - auvs_;
-    const auto draw = static_cast<std::uint64_t>(packet->generation / 1000000);
-    Pick(auvs_, stations, draw, packet);
-    Pick(0, auvs_, draw, packet);
-    if (packet->ranges.size() == 1) Pick(0, auvs_, draw + 1, packet);
+    measured_.Tell(packet);
   }
 
  private:
@@ -214,7 +207,7 @@ class RangeLocalizer : public Localizer {
         own_way_.At(z.at, &z.p_receiver)) {
       z.sound_mps = SoundBetween(z);
       z.range_m = letter.travel_time_s * z.sound_mps;
-      newest_[static_cast<std::size_t>(letter.id)] = {letter.id, z.at, z.range_m};
+      measured_.Add({letter.id, z.at, z.range_m});
       Take(now, z);
     }
     if (letter.has_bearing) ReadBearing(now, letter);
@@ -282,28 +275,6 @@ class RangeLocalizer : public Localizer {
     filter_.Take(z);
   }
 
-  /// Adds one of the newest readings of members first .. first + count - 1.
-  void Pick(int first, int count, std::uint64_t draw, NeighbourState* packet) const {
-    if (packet->ranges.full()) return;
-    const auto usable = [&](int id) {
-      const ToldRange& r = newest_[static_cast<std::size_t>(id)];
-      if (r.range_m == 0.0 || r.range_m < kLeastRange_m || r.range_m > kMostRange_m) return false;
-      if (packet->generation - r.stamp > kOldest / 2) return false;
-      return packet->ranges.empty() || packet->ranges[0].source != id;
-    };
-    int heard = 0;
-    for (int id = first; id < first + count; ++id) heard += usable(id) ? 1 : 0;
-    if (heard == 0) return;
-    // A hash spreads the choice for any rhythm of the packets.
-    const std::uint64_t mixed = (draw * 0x9E3779B97F4A7C15ULL) >> 33;
-    auto chosen = static_cast<int>(mixed % static_cast<std::uint64_t>(heard));
-    for (int id = first; id < first + count; ++id) {
-      if (!usable(id) || chosen-- > 0) continue;
-      packet->ranges.push_back(newest_[static_cast<std::size_t>(id)]);
-      return;
-    }
-  }
-
   int auvs_, self_;
   double current_std_mps_;
   TimeNs tolerance_;
@@ -312,8 +283,8 @@ class RangeLocalizer : public Localizer {
   std::vector<Vec3<double>> chart_;  // [stations]
   ClockModel clocks_;
   JointFilter filter_;
-  std::vector<ToldWay> ways_;      // by member
-  std::vector<ToldRange> newest_;  // by member: own readings of its packets
+  std::vector<ToldWay> ways_;  // by member
+  MeasuredRanges measured_;
   std::vector<Letter> pending_;
   OwnWay own_way_;
   std::vector<Taken> taken_;  // used as a ring

@@ -33,8 +33,14 @@ Station::Station(SharedConstants constants, int station)
       member_(constants_->model.run.agents + station),
       craft_(constants_->model.stations.is_craft(station)),
       home_W_(HomeOf(constants_->model.stations, station)),
+      sound_(constants_->model.channel.water),
       heard_(static_cast<std::size_t>(constants_->model.run.agents)) {
-  if (craft_) localizer_ = MakeLocalizer(constants_->model, member_);
+  const AgentModel& model = constants_->model;
+  if (craft_) {
+    localizer_ = MakeLocalizer(model, member_);
+  } else if (model.locates() && !model.pings_members()) {
+    ranges_ = std::make_unique<MeasuredRanges>(model.run.agents, model.members());
+  }
   Reset(0, 0);
 }
 
@@ -46,6 +52,7 @@ void Station::Reset(std::uint64_t seed, std::uint32_t episode) {
   v_W_ = {};
   std::fill(heard_.begin(), heard_.end(), Heard());
   if (localizer_ != nullptr) localizer_->Reset();
+  if (ranges_ != nullptr) ranges_->Clear();
   Err(0, true);
 }
 
@@ -70,7 +77,7 @@ void Station::Err(std::uint32_t step, bool start) {
 
 void Station::Receive(const acoustics::Reception& reception, const Vec3<double>& r_W) {
   const bool bearings = constants_->model.stations.usbl_std_deg > 0.0;
-  if (localizer_ == nullptr && !bearings) return;
+  if (localizer_ == nullptr && ranges_ == nullptr && !bearings) return;
   const acoustics::ByteView& bytes = reception.payload;
   const int source = PacketCodec::SourceOf(bytes.data, bytes.size);
   if (source < 0 || source >= constants_->model.members()) return;
@@ -79,6 +86,7 @@ void Station::Receive(const acoustics::Reception& reception, const Vec3<double>&
     const NeighbourState state =
         constants_->codec.Decode(bytes.data, bytes.size, reception.arrival, near);
     if (localizer_ != nullptr) localizer_->Hear(state, reception);
+    if (ranges_ != nullptr) MeasureRange(state, reception);
     if (source >= constants_->model.run.agents) return;
     Heard& heard = heard_[static_cast<std::size_t>(source)];
     if (state.generation <= heard.stamp) return;
@@ -94,6 +102,13 @@ void Station::Receive(const acoustics::Reception& reception, const Vec3<double>&
   } catch (const UserError&) {
     // A packet may be damaged on its way.
   }
+}
+
+void Station::MeasureRange(const NeighbourState& state, const acoustics::Reception& reception) {
+  // The slowness depends on depths only, which a packet contains whole.
+  const double slowness =
+      SlownessBetween(sound_, constants_->model.channel.water.surface_z_m, told_W(), state.p_W);
+  ranges_->Add({state.source, reception.transmit, reception.travel_time_s / slowness});
 }
 
 void Station::Advance(TimeNs now, std::uint32_t step) {
@@ -153,6 +168,7 @@ Packet Station::MakePacket() {
   const StationsConfig& s = constants_->model.stations;
   state.position_std_m = craft_ ? s.gps_std_m : s.survey_std_m;
   if (localizer_ != nullptr) localizer_->Tell(&state);
+  if (ranges_ != nullptr) ranges_->Tell(&state);
   if (s.usbl_std_deg > 0.0) TellBearing(&state);
   return constants_->codec.Encode(state);
 }

@@ -88,6 +88,27 @@ TEST(LocalizationFlight, CrystalClocksAreEstimated) {
                                 "channel.physical.modem.clock_offset_std_s=1.0"}));
 }
 
+// A beacon's own ranges together with those of the AUVs show how far apart their clocks are. With
+// the AUVs' ranges alone, the positions are five times as wrong.
+TEST(LocalizationFlight, RangesInBothDirectionsFindTheDriftOfBeaconClocks) {
+  const task::MetricSummary m = Fly("beacons", {"localization.ranges.clocks=estimated",
+                                                "channel.physical.modem.clock_drift_std_ppm=10.0"});
+  EXPECT_LT(m.Mean("navigation_rmse_tail"), 4.0);
+  EXPECT_LT(m.Mean("navigation_nees"), 5.0);
+}
+
+// The beacon is up to 4.5 km away. Slots that are too short for this way let its packets come in
+// the slot of the next member, so that some AUVs do not hear each other for a long time.
+TEST(LocalizationFlight, PacketsOfAFarBeaconArriveInTheirOwnSlots) {
+  for (const char* condition : {"beacon", "beacons"}) {
+    const task::MetricSummary m =
+        Fly(condition, {"stations.beacons=[[1500, 1500, -100], [-1500, -1500, -100], "
+                        "[1500, -1500, -100], [-1500, 1500, -100]]"});
+    EXPECT_LT(m.Mean("packet_loss"), 0.01) << condition;
+    EXPECT_LT(m.Mean("relative_rmse"), 3.0) << condition;
+  }
+}
+
 TEST(LocalizationFlight, BearingsFromABeaconPlaceTheSwarmBetter) {
   const task::MetricSummary ranges = Fly("beacon");
   const task::MetricSummary both = Fly("beacon", {"stations.usbl_std_deg=0.3"});

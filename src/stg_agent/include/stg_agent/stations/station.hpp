@@ -6,12 +6,14 @@
 #include "acoustic_channel/modem/packet.hpp"
 #include "stg_agent/inbox/agent_constants.hpp"
 #include "stg_agent/localization/localizer.hpp"
+#include "stg_agent/localization/measured_ranges.hpp"
 #include "stg_agent/packet/packet.hpp"
 
 namespace stg::agent {
 
 /// One beacon or surface craft: its true position, its stated position, and its packet. A beacon
-/// lies at its charted position, apart from the error of the survey. A craft measures its position
+/// lies at its charted position, apart from the error of the survey. It measures the ranges of the
+/// packets that it receives, and its own packets tell them. A craft measures its position
 /// by satellite, with a lasting error. It receives the AUVs' packets, estimates their positions as
 /// the AUVs do, and circles around the middle of those that it heard lately. Its hull follows
 /// commands with a lag.
@@ -47,6 +49,8 @@ class Station {
     TimeNs told = -1;  ///< when its bearing was last sent; -1: never
   };
   void Err(std::uint32_t step, bool start);
+  /// Measures the range of a received packet by its travel time.
+  void MeasureRange(const NeighbourState& state, const acoustics::Reception& reception);
   /// Adds the newest bearing of the AUV whose bearing was sent longest ago.
   void TellBearing(NeighbourState* state);
   /// Commanded velocity [m/s].
@@ -56,8 +60,10 @@ class Station {
   int member_;
   bool craft_;
   Vec3<double> home_W_;
-  std::unique_ptr<Localizer> localizer_;
-  std::vector<Heard> heard_;  // [agents]
+  acoustics::SoundSpeedProfile sound_;
+  std::unique_ptr<Localizer> localizer_;    // of a craft
+  std::unique_ptr<MeasuredRanges> ranges_;  // of a beacon, if ranges are travel times
+  std::vector<Heard> heard_;                // [agents]
   std::uint64_t seed_ = 0;
   std::uint32_t episode_ = 0;
   TimeNs now_ = 0;
