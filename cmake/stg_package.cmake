@@ -1,46 +1,51 @@
-# What the packages of this repository do alike, with catkin and without: call these functions on
-# targets that CMake's own commands made. STG_CORE_ONLY means a build of the cores alone, which the
-# CMakeLists.txt of the repository starts, and which needs neither catkin nor ROS.
+# Functions that all packages of this repository use, with catkin and without. Call them on targets
+# that CMake's own commands made. STG_CORE_ONLY is set in a build of the cores alone. Such a build
+# starts at the CMakeLists.txt of the repository and needs neither catkin nor ROS.
 include_guard(DIRECTORY)
 include(${CMAKE_CURRENT_LIST_DIR}/stg_flags.cmake)
-# The one place of the version; `./stg lint versions` compares what else must state it.
+# Only the file VERSION defines the version. `./stg lint versions` compares the other files that
+# state it.
 file(STRINGS ${CMAKE_CURRENT_LIST_DIR}/../VERSION STG_VERSION)
 
-option(STG_UNITY "Compile the sources of a target a dozen at a time, which halves the build" ON)
+option(STG_UNITY "Compile twelve sources of a target at a time, which halves the time of a build" ON)
 
-# stg_unity(TARGET): names in the anonymous namespaces of its sources must then differ.
+# stg_unity(TARGET): compiles several sources as one. So the names in their anonymous namespaces must
+# differ.
 function(stg_unity target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${STG_UNITY} UNITY_BUILD_BATCH_SIZE 12)
 endfunction()
 
-# stg_optimise(TARGET OPTION): -O1 or -O2 where the compiler's time matters more than the program's.
+# stg_optimise(TARGET OPTION): compiles with -O1 or -O2 instead of -O3, where the time of the build
+# matters more than the speed of the program.
 function(stg_optimise target option)
   if(NOT STG_SANITIZE)
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:${option}>)
   endif()
 endfunction()
 
-# stg_shared_version(TARGET): headers and libraries belong together within a minor version.
+# stg_shared_version(TARGET): sets the version of a shared library. Its soname contains major and
+# minor version, because headers and libraries of different minor versions do not fit.
 function(stg_shared_version target)
   string(REGEX MATCH "^[0-9]+\\.[0-9]+" minor ${STG_VERSION})
   set_target_properties(${target} PROPERTIES VERSION ${STG_VERSION} SOVERSION ${minor})
 endfunction()
 
-# stg_use(TARGET PUBLIC|PRIVATE [PACKAGE ...]): compiles and links a target with other packages' cores.
+# stg_use(TARGET PUBLIC|PRIVATE [PACKAGE ...]): compiles and links a target with the cores of other
+# packages.
 function(stg_use target scope)
   foreach(package IN LISTS ARGN)
     if(TARGET ${package})
       target_link_libraries(${target} ${scope} ${package})
     else()
-      # Built apart, as catkin_make_isolated and Debian's dh-ros do; catkin found it.
+      # catkin found the package, which was built on its own (catkin_make_isolated, Debian's dh-ros).
       target_include_directories(${target} SYSTEM ${scope} ${${package}_INCLUDE_DIRS})
       target_link_libraries(${target} ${scope} ${${package}_LIBRARIES})
     endif()
   endforeach()
 endfunction()
 
-# stg_core_library(TARGET [PACKAGE ...]): a library of a core, on top of other packages' cores.
-# Plain CMake exports it with the set STG_EXPORT.
+# stg_core_library(TARGET [PACKAGE ...]): sets up a library of a core that uses the cores of other
+# packages. Plain CMake adds it to the export set STG_EXPORT.
 set(STG_EXPORT stgTargets)
 function(stg_core_library target)
   add_library(stg::${target} ALIAS ${target})
@@ -58,15 +63,16 @@ function(stg_core_library target)
   endif()
 endfunction()
 
-# stg_core_tool(TARGET NAME): a command line of a core, called NAME.
+# stg_core_tool(TARGET NAME): sets up a command-line program of a core and calls it NAME.
 function(stg_core_tool target name)
   set_target_properties(${target} PROPERTIES OUTPUT_NAME ${name})
   stg_optimise(${target} -O2)
 endfunction()
 
 # stg_test(TARGET SOURCES FILE ... LIBRARIES LIBRARY ... [DEFINITIONS DEFINITION ...]
-# [INCLUDE_DIRECTORIES FOLDER ...] [PROGRAMS TARGET ...]): one program of GoogleTests, which may run
-# the programs. `./stg test PATTERN` finds it by its own name and by its files' names.
+# [INCLUDE_DIRECTORIES FOLDER ...] [PROGRAMS TARGET ...]): makes one program of GoogleTests. It may
+# start the PROGRAMS, so they are built before it. `./stg test PATTERN` finds it by its name and by the
+# names of its files.
 function(stg_test target)
   cmake_parse_arguments(
     ARG "" "" "SOURCES;LIBRARIES;DEFINITIONS;INCLUDE_DIRECTORIES;PROGRAMS" ${ARGN}
@@ -105,8 +111,8 @@ function(stg_test target)
   set_tests_properties(${test} PROPERTIES LABELS "${labels}")
 endfunction()
 
-# stg_plain_python(TARGETS FOLDER MODULE FILE ...): without catkin, puts the files of python/MODULE
-# beside the extensions TARGETS in FOLDER/MODULE, as links, and installs all of them.
+# stg_plain_python(TARGETS FOLDER MODULE FILE ...): for builds without catkin. FOLDER/MODULE has the
+# extensions TARGETS. This adds links to the files of python/MODULE there, and installs all of them.
 function(stg_plain_python targets folder module)
   set(destination ${CMAKE_INSTALL_LIBDIR}/python3/dist-packages/${module})
   file(MAKE_DIRECTORY ${folder}/${module})
@@ -118,7 +124,7 @@ function(stg_plain_python targets folder module)
   install(TARGETS ${targets} LIBRARY DESTINATION ${destination})
 endfunction()
 
-# stg_node_target(TARGET [LIBRARY ...]): a library or program with ROS in it, on top of libraries of
+# stg_node_target(TARGET [LIBRARY ...]): sets up a library or program that uses ROS and libraries of
 # this repository.
 function(stg_node_target target)
   set(headers ${CMAKE_CURRENT_SOURCE_DIR}/src/nodes/include)
@@ -138,8 +144,8 @@ function(stg_node_target target)
   stg_optimise(${target} -O2)
 endfunction()
 
-# stg_graph_node(TARGET NAME [LIBRARY ...]): a program called NAME that `./stg run` starts, and
-# therefore builds.
+# stg_graph_node(TARGET NAME [LIBRARY ...]): sets up a node called NAME. `./stg run` starts it, so the
+# target stg_graph, which `./stg run` builds, contains it.
 function(stg_graph_node target name)
   stg_node_target(${target} ${ARGN})
   set_target_properties(${target} PROPERTIES OUTPUT_NAME ${name})

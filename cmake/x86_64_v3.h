@@ -1,8 +1,8 @@
-/* Whether this processor and its system run x86-64-v3: what CMake, the launcher of the Debian
- * packages and the Python module ask. C and C++.
+/* Checks if the processor and the operating system can run code for x86-64-v3. CMake, the launcher
+ * of the Debian packages and the Python module use this file, so it is valid C and C++.
  *
- * The processor is asked itself (CPUID), for a kernel may hide a feature from /proc/cpuinfo that
- * programs can use; without __builtin_cpu_supports, for not every compiler knows the level's name.
+ * It reads CPUID, because a kernel may hide a feature from /proc/cpuinfo that programs can use. It
+ * does not use __builtin_cpu_supports, because not every compiler knows the name of the level.
  */
 #ifndef STG_X86_64_V3_H
 #define STG_X86_64_V3_H
@@ -10,7 +10,7 @@
 #ifdef __x86_64__
 #include <cpuid.h>
 
-/* The level by the System V ABI of AMD64, table 3.1; the bits by the makers' manuals. */
+/* Features of the level: System V ABI of AMD64, table 3.1. Bits: manuals of Intel and AMD. */
 static inline int stg_has_x86_64_v3(void) {
   /* Leaf 1, ECX: SSE3, SSSE3, FMA, CMPXCHG16B, SSE4.1, SSE4.2, MOVBE, POPCNT, OSXSAVE, AVX, F16C.
    */
@@ -19,7 +19,7 @@ static inline int stg_has_x86_64_v3(void) {
   /* Leaf 7, EBX: BMI1, AVX2, BMI2. Leaf 0x80000001, ECX: LAHF, LZCNT. */
   const unsigned extended = 1u << 3 | 1u << 5 | 1u << 8;
   const unsigned further = 1u << 0 | 1u << 5;
-  /* XCR0: the system keeps the registers of SSE and AVX when it changes between programs. */
+  /* XCR0: the system saves the registers of SSE and AVX when it switches to another program. */
   const unsigned kept = 1u << 1 | 1u << 2;
   unsigned a, b, c, d;
   if (!__get_cpuid(1, &a, &b, &c, &d) || (c & basic) != basic) return 0;
