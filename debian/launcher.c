@@ -1,9 +1,8 @@
-/* Starts the program of this name and package that was compiled for this processor:
+/* Is installed as /usr/lib/PACKAGE/PROGRAM and starts PRIVATE/SET/PACKAGE/PROGRAM.
  *
- *   /usr/lib/PACKAGE/PROGRAM  becomes  PRIVATE/SET/PACKAGE/PROGRAM
- *
- * SET is x86-64-v3 where the processor has it and the package brings it, else baseline;
- * STG_INSTRUCTION_SET names one. The process stays the same, so do its name and its signals. */
+ * SET is x86-64-v3 if the processor has it and the package contains the program for it, otherwise
+ * baseline. STG_INSTRUCTION_SET in the environment names another set. The launcher calls exec, so
+ * the process, its name and its signals stay the same. */
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,7 +13,7 @@
 
 static const char *best_set(void) { return stg_has_x86_64_v3() ? "x86-64-v3" : "baseline"; }
 
-/* Writes the path of the program to `target`, whether there is one or not. */
+/* Writes the path of the program to `target`. The file need not exist. */
 static void locate(char *target, const char *set, const char *program) {
   if (snprintf(target, PATH_MAX, "%s/%s/%s", PRIVATE, set, program) >= PATH_MAX) target[0] = '\0';
 }
@@ -28,7 +27,7 @@ int main(int argc, char **argv) {
     return 126;
   }
   self[length] = '\0';
-  /* The last two parts of the path are package and program. */
+  /* The last two parts of the path are the package and the program. */
   char *program = strrchr(self, '/');
   while (program > self && program[-1] != '/') --program;
 
