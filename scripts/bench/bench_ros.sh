@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
-# Measures the ROS graph of a built and sourced workspace and prints one line of JSON: lockstep speed
-# with 4 and 20 AUVs, time from detection to wrench in three runs in real time (each run's, and the
-# run in the middle), resident memory of agent nodes.
+# Measures the ROS graph of a built and sourced workspace and prints one line of JSON: the speed in
+# lockstep with 4 and 20 AUVs, the time from detection to wrench in three runs in real time (of each run,
+# and the middle one), and the largest resident memory of an agent node.
 # Usage: bench_ros.sh [FILE]   also writes the JSON to FILE
-# Exit status 1, after the JSON, when a figure is missing; the runs' last lines are on stderr.
+# If a number is missing, the exit status is 1 and stderr has the last lines of each run.
 set -euo pipefail
-export LC_ALL=C.UTF-8  # JSON has points, whatever the user's language writes
+export LC_ALL=C.UTF-8  # JSON needs decimal points; the user's language may have commas
 
 work=$(mktemp -d)
 export ROS_HOME=$work/ros_home
-# A free port: another run may be up.
+# A free port, because another run may use the usual one.
 port=$(/usr/bin/python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])')
 export ROS_MASTER_URI=http://127.0.0.1:$port ROS_IP=${ROS_IP:-127.0.0.1}
 launch=
@@ -20,7 +20,7 @@ finish() {
 }
 trap finish EXIT
 
-# run NAME SECONDS ARGUMENTS...: one run to its end; its output goes to NAME.log.
+# run NAME SECONDS ARGUMENTS...: starts a run of at most SECONDS. Its output goes to NAME.log.
 run() {
   local name=$1 limit=$2
   shift 2
@@ -34,7 +34,7 @@ finished() {
   launch=
 }
 
-# figure NAME PATTERN: the number that the world's closing line gives.
+# figure NAME PATTERN: prints a number from the last line of the world, or null.
 figure() {
   sed -n "s/.*world: [0-9]* steps in .*$2.*/\1/p" "$work/$1.log" | tail -n 1 | grep . || echo null
 }
@@ -55,7 +55,7 @@ live live1
 sleep 20
 memory=0
 for process in /proc/[0-9]*; do
-  # A process may end while this looks at it.
+  # A process may end during this step.
   command=$({ tr '\0' '\n' <"$process/cmdline"; } 2>/dev/null) || continue
   if [[ "$command" == */stg_agent/agent* && "$command" == *"$ROS_HOME"* ]]; then
     kib=$(awk '/^VmRSS:/ { print $2 }' "$process/status")
@@ -68,7 +68,7 @@ for name in live2 live3; do
   finished
 done
 
-# each PATTERN: that figure of the three live runs, as a list; middle PATTERN: the one in the middle.
+# each PATTERN: prints the number of each live run, as a list. middle PATTERN: prints the middle one.
 each() {
   echo "[$(figure live1 "$1"), $(figure live2 "$1"), $(figure live3 "$1")]"
 }
@@ -87,6 +87,6 @@ echo "$json"
 [[ $# -eq 0 ]] || echo "$json" >"$1"
 if [[ "$json" == *null* ]] || ((memory == 0)); then
   tail -n 20 "$work"/*.log >&2
-  echo "bench_ros: a figure is missing; above, the end of each run" >&2
+  echo "bench_ros: a number is missing; see the end of each run above" >&2
   exit 1
 fi

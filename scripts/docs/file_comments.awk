@@ -1,5 +1,5 @@
-# Comments of a header as doxygen is to read them: the one before the namespace tells of the file, and a
-# first sentence does not end after an initial or an abbreviation.
+# Changes the comments of a header for doxygen: the comment before the namespace becomes that of the file,
+# and a first sentence does not end after an initial or an abbreviation.
 /^ *\/\/\// {
   while (match($0, /(Eq|Eqs|Fig|Sec|No|e\.g|i\.e|[ (][A-Z])\. /))
     $0 = substr($0, 1, RSTART + RLENGTH - 2) "\\ " substr($0, RSTART + RLENGTH)

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes a picture of a recorded run in rviz without a display. Needs a built and sourced workspace.
+# Makes a picture of a recorded run in rviz, without a display. Needs a built and sourced workspace.
 set -euo pipefail
 
 root=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.." && pwd)
@@ -8,7 +8,7 @@ usage() {
   cat <<'TEXT'
 usage: scripts/docs/screenshot.sh [OPTIONS] OUT.png
 
-  --bag FILE        recorded run to show (default: a run of --scenario is recorded first)
+  --bag FILE        recorded run to show (default: this program records a run of --scenario)
   --scenario NAME   scenario to record, launch/NAME.launch (default: medium)
   --seed N          seed of that run (default: 3)
   --view NAME       overview or follow (default: overview)
@@ -58,7 +58,7 @@ cleanup() {
 }
 trap cleanup EXIT
 
-# A master of its own on the loopback: a run that is under way is not disturbed.
+# A ROS master of its own, so that this does not disturb another run.
 port=$(/usr/bin/python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])')
 export ROS_MASTER_URI=http://127.0.0.1:$port ROS_IP=127.0.0.1 LIBGL_ALWAYS_SOFTWARE=1
 
@@ -71,7 +71,7 @@ fi
 [[ -f "$bag" ]] || { tail -n 20 "$work"/*.log >&2 || true; fail "no bag $bag"; }
 bag=$(readlink -f "$bag")
 
-# The picture shows the scene alone: a margin for menu and tool bar is cut off.
+# The picture shows only the scene: the margin with menu and tool bar is cut off.
 width=${size%x*} height=${size#*x} margin=120
 /usr/bin/python3 - "$bag" "$work/scenario.yaml" <<'PYTHON'
 import sys
@@ -84,15 +84,15 @@ PYTHON
 sed -e "s/^  Height: .*/  Height: $((height + margin))/" -e "s/^  Width: .*/  Width: $((width + 32))/" \
   "$work/view.rviz" >"$work/shot.rviz"
 
-# rviz needs a moment to start. The run is played from its beginning, for the sake of the trails, up
-# to the moment wanted, and then stands still.
+# rviz needs some seconds to start. The replay starts at the beginning, so that there are trails, and
+# stops at the wanted time.
 rate=$(/usr/bin/python3 -c "print(max(1.0, $at / 6.0))")
 roslaunch -p "$port" stg_bringup replay.launch gui:=false stay:=true bag:="$bag" \
   duration:="$at" rate:="$rate" delay:=8 >"$work/replay.log" 2>&1 &
 pids+=($!)
 xvfb-run -a -s "-screen 0 $((width + 32))x$((height + margin))x24" bash -c "
   rviz -d '$work/shot.rviz' >'$work/rviz.log' 2>&1 & viewer=\$!
-  # Whether the replay has come to that moment, and rviz is there to show it.
+  # Succeeds if the replay has reached the wanted time and rviz runs.
   shown() {
     grep -q 'player.*process has finished cleanly' '$work/replay.log' &&
       rosnode list 2>/dev/null | grep -q '^/rviz'

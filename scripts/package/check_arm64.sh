@@ -1,7 +1,9 @@
 #!/usr/bin/env bash
-# Compiles the cores for arm64 in a new Debian 12 with a cross compiler, and runs their unit tests under
-# qemu: check_arm64.sh [FOLDER [TEST ...]]. FOLDER keeps system and build for the next call (default: a
-# temporary one); TEST is the name of a test program (default: all). As root; needs mmdebstrap.
+# Compiles the cores for arm64 in a new Debian 12 with a cross compiler, and runs their unit tests with
+# qemu. Needs root and mmdebstrap.
+# Usage: check_arm64.sh [FOLDER [TEST ...]]
+# FOLDER keeps the system and the build for the next call (default: a temporary folder). TEST is the name
+# of a test program (default: all).
 set -euo pipefail
 
 root=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.." && pwd)
@@ -39,7 +41,7 @@ CMAKE
   touch "$folder/complete"
 fi
 
-# inside COMMAND: with the repository at /source.
+# inside COMMAND: runs it in the new system, with the repository at /source.
 inside() {
   # shellcheck disable=SC2016
   unshare --mount --pid --fork --kill-child bash -c '
@@ -53,7 +55,8 @@ inside() {
 inside "cmake -S /source -B /build -G Ninja -DCMAKE_TOOLCHAIN_FILE=/arm64.cmake -DSTG_PYTHON=OFF \
   -DCMAKE_CXX_COMPILER_LAUNCHER=ccache" >"$folder/configure.log" 2>&1 || { tail -n 30 "$folder/configure.log" >&2; exit 1; }
 inside "ninja -C /build ${tests[*]:-all tests}"
-# Tests start programs of ours by their names, and the kernel knows no qemu: a line of shell stands in each one's place.
+# Tests start our programs by name, and the kernel does not start qemu for them. So each program is replaced
+# by a shell script that does.
 # shellcheck disable=SC2016
 inside 'cd /build && find . -type f -perm /111 ! -name "*.so*" ! -name "*_test" ! -name "*.arm64" ! -path "*/CMakeFiles/*" |
   while read -r program; do

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# Builds the image of the Containerfile with podman and flies an episode in it: check_container.sh [BASE],
-# BASE being an image to build on instead of the Containerfile's (a registry need not be in reach:
-# `mmdebstrap --variant=minbase bookworm base.tar && podman import base.tar localhost/debian:12`).
-# STG_PODMAN holds options of podman, as --runtime runc; STG_PODMAN_RUN those of podman run.
+# Builds the image of the Containerfile with podman and runs an episode in it.
+# Usage: check_container.sh [BASE]
+# BASE is an image that replaces the one named in the Containerfile. Without access to a registry, make one:
+# `mmdebstrap --variant=minbase bookworm base.tar && podman import base.tar localhost/debian:12`.
+# STG_PODMAN has options of podman, such as --runtime runc; STG_PODMAN_RUN has options of podman run.
 set -euo pipefail
 
 root=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.." && pwd)
@@ -11,7 +12,7 @@ read -ra running <<<"${STG_PODMAN_RUN:-}"
 from=()
 [[ -z "${1:-}" ]] || from=(--from "$1")
 
-# stop SENTENCE: what the machine does not offer.
+# stop SENTENCE: ends with a sentence on what this machine cannot do.
 stop() {
   echo "check_container: $*" >&2
   exit 1
@@ -22,13 +23,13 @@ summary=$(mktemp -d)
 trap 'rm -rf "$summary"' EXIT
 
 start=$SECONDS
-# Steps in a mere chroot: no registers of processes or networks are needed for apt and a compiler.
+# The steps run in a chroot: apt and a compiler need no namespaces for processes and networks.
 "${podman[@]}" build --isolation chroot --network host "${from[@]}" -t stg "$root" ||
   stop "podman could not build the image here, as it says above"
 echo "check_container: $((SECONDS - start)) s for the image"
-# Some machines build, and start nothing: of control groups of two kinds, or of limits that cannot be raised.
+# Some machines can build images but start no container, e.g. because of mixed control groups or fixed limits.
 "${podman[@]}" run --rm "${running[@]}" --entrypoint /bin/true stg ||
-  stop "podman builds, but starts no container here, as it says above; STG_PODMAN='--runtime runc' and STG_PODMAN_RUN may help"
+  stop "podman can build an image here, but cannot start a container, as it says above; STG_PODMAN='--runtime runc' and STG_PODMAN_RUN may help"
 start=$SECONDS
 "${podman[@]}" run --rm "${running[@]}" -v "$summary:/out" stg \
   run medium episodes:=1 real_time_factor:=0 gui:=false summary_file:=/out/summary.yaml

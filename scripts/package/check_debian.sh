@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Flies from the packages of dist/debian in a new Debian 12 that holds nothing else, without a compiler;
-# upgrades and purges them, and looks at what is left. As root; needs mmdebstrap and lintian.
-# check_debian.sh [MIRROR]: the time of downloads is told apart. With STG_BASE, a tar of a Debian 12, it
-# takes that instead of making one.
+# Installs the packages of dist/debian in a new Debian 12 without a compiler, and runs the programs. Then
+# it upgrades and purges the packages and checks that no file is left. Needs root, mmdebstrap and lintian.
+# Usage: check_debian.sh [MIRROR]
+# It measures downloads separately. If STG_BASE names a tar file of a Debian 12, it uses this system.
 set -euo pipefail
 
 root=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.." && pwd)
@@ -16,7 +16,7 @@ say() {
   echo "check_debian: $*"
 }
 
-# inside COMMAND: in the new system, which ends with all that it started.
+# inside COMMAND: runs it in the new system. All processes that it starts end with it.
 inside() {
   local net=()
   [[ -n "${WITH_NET:-}" ]] || net=(--net)
@@ -30,7 +30,7 @@ inside() {
       STG_INSTRUCTION_SET="$3" chroot "$0" sh -c "cd /root && $2"' "$new" "$index" "$*" "${STG_INSTRUCTION_SET:-}"
 }
 
-# timed NAME COMMAND ...: says how long the command took, and how much of that a processor worked.
+# timed NAME COMMAND ...: prints how long the command took, and its processor time.
 timed() {
   local name=$1 TIMEFORMAT='%R %U %S'
   shift
@@ -38,7 +38,7 @@ timed() {
   say "$(awk '{ printf "%6.1f s (processor: %5.1f s)", $1, $2 + $3 }' "$work/time")  $name"
 }
 
-# repeat_as VERSION: the same packages as another version, for an upgrade without another build.
+# repeat_as VERSION: makes packages with the same files and another version, to test an upgrade.
 repeat_as() {
   local package folder=$work/repacked
   mkdir -p "$work/next"
@@ -90,7 +90,7 @@ timed "roslaunch stg_bringup medium.launch, one episode" inside \
   roslaunch stg_bringup medium.launch episodes:=1 real_time_factor:=0 summary_file:=/root/summary.yaml
 [[ -s "$new/root/summary.yaml" ]]
 inside "! which cc gcc g++ c++ clang make ninja"
-# The launcher refuses what the processor lacks.
+# The launcher refuses an instruction set that the processor does not have.
 sets=(baseline)
 ! STG_INSTRUCTION_SET=x86-64-v3 inside "rosrun marl_trainer evaluate --help" >/dev/null 2>&1 || sets+=(x86-64-v3)
 for set in "${sets[@]}"; do
@@ -99,7 +99,7 @@ for set in "${sets[@]}"; do
   say "return on $set: $(python3 -c 'import json, sys; print(repr(json.load(sys.stdin)["return"]))' <"$work/$set.json")"
   cp "$work/$set.json" "$root/dist/evaluate-$set.json"
 done
-# Also without what is only recommended: a module that a program imports and no package brings ends it.
+# Recommended packages are not installed. So this finds programs that import a module without a dependency.
 # shellcheck disable=SC2016
 timed "the help of every command line" inside 'cd /usr/lib && for program in acoustic_channel/*.py acoustic_channel/simulate \
   auv_dynamics/c[hr]*_* marl_trainer/* stg_bringup/* stg_monitor/*report.py stg_monitor/view.py; do
@@ -122,7 +122,7 @@ timed "training" inside "rosrun marl_trainer train --scenario medium_separated -
 timed "the acoustic network alone" inside \
   "rosrun acoustic_channel simulate /usr/share/acoustic_channel/networks/survey.yaml --out /root/network"
 
-# A library of the user's own, compiled with the packages' headers for the programs of this processor.
+# A user's library, compiled with the installed headers, for the instruction set of the programs here.
 compiler="apt-get install -y --no-install-recommends -o Acquire::Retries=3 stg-dev g++ pkg-config"
 march=
 [[ "${sets[*]}" != *x86-64-v3 ]] || march=-march=x86-64-v3
@@ -135,7 +135,7 @@ timed "a plugin, compiled and flown" inside "g++ -std=c++17 -O2 -ffp-contract=of
 next=$(<"$root/VERSION")+next
 repeat_as "$next"
 index=$work/next
-# Of Debian itself nothing new is wanted, and no network is there.
+# apt shall read only our packages, because there is no network.
 timed "apt-get upgrade to $next" inside "apt-get -o Dir::Etc::SourceList=/dev/null update && apt-get -y upgrade"
 inside "dpkg-query -W -f '\${Package} \${Version}\n'" | grep -E '^(stg-|python3-stg)' >"$work/versions"
 [[ "$(grep -c "$next\$" "$work/versions")" == "$(wc -l <"$work/versions")" ]] || { cat "$work/versions" "$work/log"; exit 1; }
@@ -144,4 +144,4 @@ timed "apt-get purge" inside "apt-get purge -y --autoremove '^stg-' python3-stg 
 files >"$work/after"
 left=$(comm -13 "$work/before" "$work/after" | grep -E 'stg|auv_|acoustic_|marl_' || true)
 [[ -z "$left" ]] || { say "left behind: $left"; exit 1; }
-say "nothing of ours is left; of Debian's packages: $(comm -13 "$work/before" "$work/after" | wc -l) files"
+say "no file of ours is left; files left by Debian's packages: $(comm -13 "$work/before" "$work/after" | wc -l)"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Installs the wheel of dist/ into a new virtual environment, without index, compiler and ROS, and flies.
-# With STG_FARAMA, folders (colons between several) that hold gymnasium and pettingzoo, which Debian lacks,
-# it also flies by the names that both know.
+# Installs the wheel of dist/ in a new virtual environment, without package index, compiler and ROS, and
+# runs episodes. Debian does not have gymnasium and pettingzoo. If STG_FARAMA lists folders that contain
+# them, separated by colons, this also makes environments by their names in gymnasium and pettingzoo.
 set -euo pipefail
 
 root=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.." && pwd)
@@ -9,13 +9,13 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
 alone=(env -i PATH=/usr/bin:/bin HOME="$folder" LC_ALL=C.UTF-8)
-# Debian's numpy, for want of an index.
+# The environment uses Debian's numpy, because pip has no index.
 "${alone[@]}" python3 -m venv --system-site-packages venv
 start=$SECONDS
 "${alone[@]}" venv/bin/pip install --no-index "$root"/dist/stg_swarm-*.whl
 "${alone[@]}" venv/bin/python -m stg.examples.random_actions
 echo "check_wheel: $((SECONDS - start)) s from pip install to random_actions"
-# The engine that stg chooses for this processor, and the one for all.
+# Tries the engine that stg chooses for this processor, and the baseline engine.
 for set in "" baseline; do
   "${alone[@]}" STG_INSTRUCTION_SET=$set venv/bin/python - <<'PYTHON'
 import stg
@@ -34,7 +34,7 @@ PYTHON
 [[ -n "${STG_FARAMA:-}" ]] || exit 0
 "${alone[@]}" PYTHONPATH="$STG_FARAMA" venv/bin/python - <<'PYTHON'
 import gymnasium
-# What stands before the colon is imported first.
+# gymnasium imports the module before the colon.
 team = gymnasium.make("stg:stg/Team-v1", scenario="hard")
 team.reset(seed=1)
 team.step(team.action_space.sample())

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Makes the Debian packages in dist/debian, a folder that apt reads. Builds in a copy of the files that
-# git knows, below build-package/, whose place stays the same for the compiler's cache.
+# Makes the Debian packages in dist/debian, a folder that apt can read. Copies the files that git knows to a
+# folder below build-package/ and builds there. The folder is always the same, so that ccache finds its
+# results again.
 set -euo pipefail
 
 root=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.." && pwd)
@@ -23,7 +24,7 @@ if command -v ccache >/dev/null; then
 fi
 log=$above/debian.log
 echo "package: building for baseline and x86-64-v3 (log: $log)"
-# Without symbols for a debugger, which would be ten times as large as the rest.
+# No debug symbols: they would be ten times as large as the rest.
 if ! (cd "$copy" && env -u OMP_NUM_THREADS STG_CMAKE_OPTIONS="${options[*]}" \
   DEB_BUILD_OPTIONS="noautodbgsym ${DEB_BUILD_OPTIONS:-}" \
   dpkg-buildpackage --no-sign --build=full) >"$log" 2>&1; then

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# ./stg package: the Debian packages in dist/debian and the wheel of stg in dist/, of one build.
+# ./stg package: makes the Debian packages in dist/debian and the wheel of stg in dist/ from the same build.
 set -euo pipefail
 
 root=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.." && pwd)

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Trains a policy as the shipped ones were trained, in a built and sourced workspace, in four runs:
-# imitation of a privileged controller, the same with wall units, MAPPO, MAPPO with a share of
-# imitation. Runs again what is missing. The policy is OUT/hold/policy_last.onnx. See
+# Trains a policy in the same way as the shipped policies, in a built and sourced workspace. There are four
+# runs: imitation of a privileged controller, the same with wall units, MAPPO, MAPPO with a share of
+# imitation. Finished runs are not repeated. The policy is OUT/hold/policy_last.onnx. See
 # docs/adr/008-privileged-teacher.md.
 # Usage: train_shipped.sh SCENARIO OUT [TRAIN_OPTION ...]   e.g. train_shipped.sh medium runs/medium
 set -euo pipefail
@@ -10,15 +10,15 @@ set -euo pipefail
 scenario=$1 out=$2
 shift 2
 
-# The law that is imitated stands in the study that flies it.
+# The study that flies the imitated law defines it.
 studies=$(cd "$(dirname "$(readlink -f "$0")")/../../src/marl_trainer/studies" && pwd)
 teacher=$(sed -n "s/^  teacher's law: \"\(.*\)\"$/\1/p" "$studies/flights/shipped.yaml")
 [[ -n "$teacher" ]]
-# Poor links need the most practice.
+# Conditions with poor links are the hardest to learn, so they come more often.
 poor=degraded_communication,combined_stress
 conditions=nominal,$poor,fast_target,$poor,far_initialization,$poor,limited_sensing,$poor
 
-# stage NAME OPTION...: one run, unless it is finished.
+# stage NAME OPTION...: makes one run, unless it is already finished.
 stage() {
   local folder=$out/$1
   shift

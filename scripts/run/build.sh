@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
-# Configures the workspace when needed and builds the given targets (default: all). With
-# STG_SANITIZE it is the cores alone, by plain CMake and in a folder of their own, that are built.
+# Configures the workspace if necessary and builds the given targets (default: all). If STG_SANITIZE is set,
+# it builds only the cores, with plain CMake and in a folder of their own.
 set -euo pipefail
 
 root=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.." && pwd)
 base=${STG_BUILD_ROOT:-$root}
 sanitize=${STG_SANITIZE:-}
-# A comma in a folder would end an argument that the compiler hands on to the linker.
+# The name of the folder must not contain a comma: it would split an argument for the linker.
 build=$base/build${sanitize:+-${sanitize//,/-}}
 
-# Catkin and ROS belong to Debian's Python, whatever else comes first on the PATH.
+# Catkin and ROS need Debian's Python, even if another one comes first on the PATH.
 export PATH="/usr/bin:$PATH"
 
 options=(
@@ -22,7 +22,7 @@ if [[ -n "$sanitize" ]]; then
   source=$root
   options+=("-DSTG_SANITIZE=$sanitize")
   if [[ "$sanitize" == fuzz ]]; then
-    # Another compiler has other warnings.
+    # clang warns about other things than GCC, so its warnings are no errors.
     options+=(-DCMAKE_CXX_COMPILER=clang++-14 -DSTG_TESTS=OFF -DSTG_PYTHON=OFF -DSTG_WERROR=OFF)
   fi
 else
@@ -47,12 +47,12 @@ if [[ -n "${STG_CMAKE_OPTIONS:-}" ]]; then
   options+=("${more[@]}")
 fi
 
-# Ninja configures again by itself when a CMake file changes, but not when a package appears.
+# Ninja configures again when a CMake file changes, but not when there is a new package or option.
 wanted=$(printf '%s\n' "${options[@]}" "$root"/src/*/package.xml)
 stamp=$build/stg_configured
 if [[ ! -f "$build/build.ninja" || ! -f "$stamp" || "$(<"$stamp")" != "$wanted" ]]; then
-  # Catkin caches the environment of its tests while configuring, and leaves out what is not there
-  # yet: without these folders the first build of a clone tests without our Python messages.
+  # While it configures, catkin saves the environment of its tests, but only with folders that exist.
+  # Without these folders, the tests after the first build would not find our Python messages.
   mkdir -p "$build" "$base/devel/lib/pkgconfig" "$base/devel/lib/python3/dist-packages"
   rm -f "$stamp"
   log=$build/configure.log
@@ -65,13 +65,13 @@ if [[ ! -f "$build/build.ninja" || ! -f "$stamp" || "$(<"$stamp")" != "$wanted" 
   printf '%s\n' "$wanted" >"$stamp"
 fi
 
-# One job a core, but no more than one for 2 GiB of memory: a Torch source needs that much.
+# One job per core, but at most one per 2 GiB of memory: a source with Torch needs this memory.
 memory_kib=$(awk '/^MemTotal:/ { print $2 }' /proc/meminfo)
-# nproc counts by OMP_NUM_THREADS where that is set, which ./stg sets to 1.
+# nproc would return OMP_NUM_THREADS, which ./stg sets to 1.
 jobs=$(env -u OMP_NUM_THREADS -u OMP_THREAD_LIMIT nproc)
 by_memory=$((memory_kib / (2 * 1024 * 1024)))
 if ((by_memory < jobs)); then
   jobs=$((by_memory > 1 ? by_memory : 1))
 fi
-# The checks of message dependencies run in every build; they are not news.
+# Every build runs the checks of message dependencies, so these lines are removed.
 ninja -C "$build" -j "$jobs" "$@" | sed -u '/genmsg_check_deps/d'

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs the Debian packages of packages.txt that are missing and makes this folder a workspace.
-# Does nothing, quickly, when nothing is missing. STG_ANY_RELEASE=1: whatever the system is.
+# Installs missing Debian packages of packages.txt and makes this folder a workspace. If nothing is missing,
+# it ends quickly. STG_ANY_RELEASE=1 allows systems other than Debian 12.
 set -euo pipefail
 export LC_ALL=C
 
@@ -11,23 +11,23 @@ die() {
   exit 1
 }
 
-# Prints the packages of packages.txt that are not installed, one a line.
+# Prints the packages of packages.txt that are not installed, one per line.
 missing_packages() {
   local wanted installed
   wanted=$(sed -e 's/#.*//' -e 's/[[:space:]]//g' -e '/^$/d' "$root/packages.txt" | sort -u)
-  # dpkg-query fails when it has never heard of a package, which only means "not installed".
+  # dpkg-query fails if it does not know a package. Such a package is not installed.
   # shellcheck disable=SC2086
   installed=$(dpkg-query -W -f '${Package} ${db:Status-Status}\n' $wanted 2>/dev/null |
     awk '$2 == "installed" { print $1 }' | sort -u) || true
   comm -23 <(echo "$wanted") <(echo "$installed")
 }
 
-# The name of the system, from os-release. STG_OS_RELEASE is another such file, for tests.
+# The name of the system, from os-release. Tests name another file in STG_OS_RELEASE.
 # shellcheck disable=SC1090
 release=$(. "${STG_OS_RELEASE:-/etc/os-release}" 2>/dev/null && echo "${ID:-unknown} ${VERSION_ID:-system}") || true
 if [[ "$release" != "debian 12" && -z "${STG_ANY_RELEASE:-}" ]]; then
-  die "this needs Debian 12, and here is ${release:-an unknown system}; docs/platforms.md has a" \
-    "container for other systems (STG_ANY_RELEASE=1 tries all the same)"
+  die "this needs Debian 12, but this machine has ${release:-an unknown system}; docs/platforms.md has a" \
+    "container for other systems (STG_ANY_RELEASE=1 tries it anyway)"
 fi
 command -v dpkg-query >/dev/null || die "this needs Debian's packages (no dpkg-query here)"
 mapfile -t missing < <(missing_packages)
@@ -43,7 +43,7 @@ if ((${#missing[@]} > 0)); then
   fi
   apt=("${as_root[@]}" DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=600
     -o Acquire::Retries=3)
-  "${apt[@]}" update || echo "setup: apt-get update failed, trying with the lists at hand" >&2
+  "${apt[@]}" update || echo "setup: apt-get update failed, trying with the existing lists" >&2
   "${apt[@]}" install -y --no-install-recommends "${missing[@]}" ||
     die "apt-get could not install all of: ${missing[*]}"
 fi
