@@ -155,7 +155,7 @@ class Flights(unittest.TestCase):
         with self.assertRaisesRegex(Exception, "other tasks at 2 steps"):
             flight_page.training_table(str(path))
         path.write_text("steps,seconds,task,band_share\n1000,2,a,0.5\n2000,3,a,0.4\n")
-        self.assertIn("The last is 0.800 of the best (0.400 of 0.500)", flight_page.training_table(str(path)))
+        self.assertIn("The last mean is 0.800 of the best one (0.400 of 0.500)", flight_page.training_table(str(path)))
 
 
 if __name__ == "__main__":

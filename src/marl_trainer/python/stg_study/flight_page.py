@@ -18,15 +18,15 @@ LEAST_GAP = 0.02  # if truth is worth less than this, no share of it is given
 TITLES = {"scenario": "Scenario", "condition": "Condition", "variant": "Variant", "pilot": "Flown by",
           "knows": "Knows", "seeds": "Seeds", "episodes": "Episodes"}  # fmt: skip
 READING = """\
-Every row flies the same episodes from seed {seed} on, of the reporting block: no training and no choice has seen them.
-Numbers are means over episodes; `{name}.csv` has the standard deviations, too. Made by
-`rosrun marl_trainer reproduce --study {name}`; what is flown stands in [{name}.yaml]({name}.yaml)."""
-READING_SEEDS = " A row with seeds of training has the mean and the standard deviation over them."
-READING_PAIRED = (" The last column is {pilot} less the row in `{metric}`, paired by episode, with its 95 % bootstrap"
-                  " interval over episodes.")  # fmt: skip
-READING_HIERARCHY = " Where there are several trainings, it is drawn over trainings and then over their episodes."
-READING_GAP = (" Gap closed: 0 is the best law on its own estimates, 1 the same law on true states; a dash where the"
-               " two differ by less than 0.02.")  # fmt: skip
+All rows use the same episodes, from seed {seed} on. They are in the reporting block: no training and no choice used
+them. Numbers are means over episodes; `{name}.csv` also has the standard deviations.
+`rosrun marl_trainer reproduce --study {name}` makes this page. [{name}.yaml]({name}.yaml) is the study."""
+READING_SEEDS = " A row with several trainings has the mean and the standard deviation over the trainings."
+READING_PAIRED = (" The last column is the mean difference in `{metric}` between {pilot} and the row over the same"
+                  " episodes, with its 95 % bootstrap interval over episodes.")  # fmt: skip
+READING_HIERARCHY = " If there are several trainings, the bootstrap draws trainings, and then episodes of each."
+READING_GAP = (" Gap closed: 0 is the best law with its own estimates, 1 is the same law with true states. There is a"
+               " dash where the two differ by less than 0.02.")  # fmt: skip
 
 
 def rows_of(study, cells):
@@ -138,7 +138,7 @@ def section_table(study, rows):
     """The Markdown table of a section's rows. Columns with the same value in every row are left out."""
     shown = [name for name in KEY[1:] if name == "pilot" or len({row[name] for row in rows}) > 1]
     header = [TITLES[name] for name in shown] + [column.title for column in study.columns]
-    header += [f"{study.compare} − it"] if study.compare else []
+    header += [f"{study.compare} − row"] if study.compare else []
     lines = []
     for row in rows:
         cells = [_pilot(study, row[name]) if name == "pilot" else row[name] for name in shown]
@@ -156,7 +156,7 @@ def beside_table(study, rows):
     column."""
     ours, *others = study.beside
     columns = [column for column in study.columns if column.beside]
-    header = ["Scenario", "Condition", "Beside"] + [column.title for column in columns]
+    header = ["Scenario", "Condition", "Best other"] + [column.title for column in columns]
     lines = []
     for place in dict.fromkeys(place_of(row) for row in rows):
         here = {row["pilot"]: row for row in rows if place_of(row) == place and row["knows"] == "own"}
@@ -187,7 +187,7 @@ def training_table(path):
         raise Damaged(path, "contains no validation")
     table = markdown(["Decisions of a swarm", "Seconds", *tasks, "Mean"], lines)
     share, last, best = means[-1] / max(means), means[-1], max(means)
-    return table + f"\nThe last is {share:.3f} of the best ({last:.3f} of {best:.3f}).\n"
+    return table + f"\nThe last mean is {share:.3f} of the best one ({last:.3f} of {best:.3f}).\n"
 
 
 def write_page(study, folder):
@@ -202,14 +202,14 @@ def write_page(study, folder):
     page = [f"# {study.title}\n", reading + "\n", study.notes.strip() + "\n"] if study.notes else [
         f"# {study.title}\n", reading + "\n"]  # fmt: skip
     if study.beside:
-        page += [f"## {study.beside[0]} beside the best of the others\n", beside_table(study, rows)]
+        page += [f"## {study.beside[0]} / best of the others\n", beside_table(study, rows)]
     for section in study.sections:
         here = [row for row in rows if row["section"] == section.title]
         if here:
             episodes = {row["episodes"] for row in here}
             page.append(f"## {section.title}\n")
             if len(episodes) == 1:
-                page.append(f"{episodes.pop()} episodes a row.\n")
+                page.append(f"{episodes.pop()} episodes per row.\n")
             page.append(section_table(study, here))
     for training in study.trainings:
         path = os.path.join(folder, training, "validation.csv")

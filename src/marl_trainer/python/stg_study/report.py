@@ -11,32 +11,33 @@ from stg_study.statistics import FINAL_SHARE, RESAMPLES
 PAPER_TABLES = {"medium": ("1", "S3", "S4", "S7"), "hard": ("2", "S5", "S6", "S8")}
 
 CONVENTIONS = """\
-- Distances are in workspace units, which this simulator reads as metres and the paper labels km.
-- **Return** is by the scenario's own reward for every method, whatever it was trained with.
-  **Training's return** is of the same flights by the reward that the method was trained with; a dash
-  where it was not measured, and for controllers, which no reward trains. Figures show the former.
-- The paper's rows: its authors' release tabulates the return of each algorithm by the reward that
-  the algorithm trained with. For STG-MAPPO that is the scenario's reward; for the baselines it is
-  another, so that their figures stand under the training's return only.
-- Evaluations (Tables 1, 2, S7, S8, comparison, interquartile means) **sum** returns over the AUVs,
-  training curves and final stages (Tables S3-S6, S9, curves, bars) **average** them over the AUVs, as
-  the paper does; the two differ by the number of AUVs, {agents}.
-- Tail: the last 100 decisions. Tables S3-S6: tracking error and lost rate are of the whole episode;
-  Tables 1, 2, S7, S8: of the tail.
-- Final stage: the last {final} % of the validations of a training, which fly the deterministic policy
-  on held-out episodes. Best checkpoint: the validation with the highest training's return; the
-  evaluations reload it.
-- Evaluation: {episodes} episodes from seed {first} + {stride} x training seed, of the reporting
-  block, which no training, validation or other choice has seen. The controllers fly the same episodes as the policies.
-- mean ± std: over seeds of training in Tables 1, 2, S3, S5 and S9 (of a controller over as many
-  blocks of episodes); over episodes of all seeds in Tables S7, S8 and the comparison.
-- Interquartile means are over runs: each training scores the mean of its episodes on each condition,
-  and the middle half of these scores is averaged. 95 % bootstrap intervals draw the trainings again
-  {resamples} times. With {seeds} seeds the intervals are rough.
-- Probability of improvement: Agarwal et al. 2021; a half for what is equal.
-- Colliding pairs: pairs of AUVs in contact per decision, over the whole episode and over the tail.
-  The paper tells neither. In band: share of the tail with d between d_l and d_u.
-- Rows marked (paper) are the paper's own figures.
+- Distances are in workspace units. This simulator reads them as metres; the paper calls them km.
+- **Return** uses the scenario's own reward for every method, even if the method was trained with another
+  reward. **Training's return** uses, for the same episodes, the reward of the method's training. It is a
+  dash where it was not measured, and for controllers, because they are not trained. The figures show the
+  return.
+- The paper's rows: in the authors' release, the return of each algorithm uses the reward of its training.
+  For STG-MAPPO this is the scenario's reward. For the baselines it is another reward, so their returns are
+  only in the column of the training's return.
+- Evaluations (Tables 1, 2, S7, S8, comparison, interquartile means) **sum** returns over the AUVs.
+  Training curves and final stages (Tables S3-S6, S9, curves, bars) **average** them over the AUVs, as
+  the paper does. The two differ by a factor of {agents}, the number of AUVs.
+- Tail: the last 100 decisions. Tracking error and lost rate are those of the whole episode in Tables
+  S3-S6, and those of the tail in Tables 1, 2, S7 and S8.
+- Final stage: the last {final} % of the validations of a training. A validation runs the deterministic
+  policy in held-out episodes. Best checkpoint: the validation with the highest training's return. The
+  evaluations use this checkpoint.
+- Evaluation: {episodes} episodes from seed {first} + {stride} x training seed. They are in the reporting
+  block: no training, validation or other choice used them. Controllers and policies use the same episodes.
+- mean ± std: in Tables 1, 2, S3, S5 and S9 over training seeds, and for a controller over as many blocks
+  of episodes. In Tables S7, S8 and the comparison over the episodes of all seeds.
+- Interquartile means: the score of a training in a condition is the mean over its episodes. The middle
+  half of all scores is averaged. For the 95 % bootstrap intervals, the trainings are drawn again {resamples}
+  times. With {seeds} seeds the intervals are rough.
+- Probability of improvement: Agarwal et al. 2021. It is 0.5 for equal methods.
+- Colliding pairs: number of pairs of AUVs in contact, mean over the decisions of the episode or of the
+  tail. The paper does not have these numbers. In band: share of the tail with d between d_l and d_u.
+- Rows marked (paper) have the paper's own numbers.
 """
 
 
@@ -89,9 +90,9 @@ def scenario_page(study, results, paper, scenario, folder):
     )
     section(
         "Probability of improvement",
-        "How likely a training of the row returns more than one of the column, mean over the "
-        "conditions, with a 95 % bootstrap interval over trainings. Blocks of episodes stand for "
-        "a controller's trainings.\n",
+        "The probability that a training of the row's method has a higher return than one of the "
+        "column's method: mean over the conditions, with a 95 % bootstrap interval over trainings. "
+        "For a controller, blocks of episodes take the place of trainings.\n",
         tables_cost.improvement_table(study, results, name),
     )
     section("Cost", tables_cost.cost_table(study, results, name))
@@ -135,8 +136,8 @@ def write_report(study, folder):
         overview.append(study.notes.strip() + "\n")
     command = f"rosrun marl_trainer reproduce --study {study.name} --out FOLDER"
     overview.append(
-        f"Made by `{command}`; `--report-only` makes the pages and figures anew from the CSV "
-        "files. The study itself stands in [study.yaml](study.yaml).\n"
+        f"`{command}` makes these results. With `--report-only` it makes only the pages and figures "
+        "again, from the CSV files. [study.yaml](study.yaml) is the study.\n"
     )
     for scenario in study.scenarios:
         page = scenario_page(study, results, paper, scenario, folder)
@@ -147,10 +148,11 @@ def write_report(study, folder):
         overview.append(tables.comparison_table(study, results, paper, scenario.name, stress))
     overview.append("## Trainings\n")
     overview.append(
-        "Options of the first training of each method; the networks' parameters that are trained, "
-        "arithmetic of the update in matrix products for each environment step, wall time of one "
-        "worker, several trainings side by side. The times to a return, without a loss, are those "
-        "of the validation that first reached it.\n"
+        "The first table has the options of the first training of each method. The next tables have "
+        "the number of trained parameters, the operations in the matrix products of the updates per "
+        "environment step, and the wall time with one worker while several trainings ran at once. "
+        "The time to a return is that of the first validation that reached it without losing a "
+        "target.\n"
     )
     overview.append(tables_cost.options_table(study, results))
     for scenario in study.scenarios:

@@ -213,13 +213,13 @@ def write_search(search, trainings, out):
     rows, chosen, missing = [], {}, 0
     page = [
         "# The search before the study of equal terms\n",
-        f"{search.trials} trials of {search.steps:,} environment steps for every algorithm on "
-        f"`{search.scenario}`, each with the training seeds "
-        f"{', '.join(map(str, search.training_seeds))}, drawn at random from "
-        "[what can be chosen](search.yaml): the same options for the same trial of every "
-        "algorithm; trial 0 is the preset as it is. Score: the return of the held-out episodes "
-        "that a training validates on (of the choosing block), mean over the last fifth of its "
-        "validations, mean ± std over seeds. No evaluation of the study took part.\n",
+        f"Every algorithm has {search.trials} trials of {search.steps:,} environment steps on "
+        f"`{search.scenario}`. Each trial is trained with the seeds "
+        f"{', '.join(map(str, search.training_seeds))}. The options of a trial are random values "
+        "from [the search](search.yaml); the same trial of every algorithm has the same values. "
+        "Trial 0 is the unchanged preset. The score is the return in the validations of a training, "
+        "in held-out episodes of the choosing block: mean over the last fifth of the validations, "
+        "mean ± std over seeds. The evaluations of the study were not used.\n",
         "| Algorithm | Trial | Options | Score | Lost | Wall s |",
         "|---|---:|---|---:|---:|---:|",
     ]
@@ -238,14 +238,14 @@ def write_search(search, trainings, out):
             rows.append((algorithm, k, text, *figures, int(k == best)))
             mark = "**" if k == best else ""
             cells = [f"{mark}{cell or '–'}{mark}" for cell in cells]
-            page.append(f"| {algorithm} | {k} | {text or 'the preset'} | " + " | ".join(cells) + " |")
+            page.append(f"| {algorithm} | {k} | {text or 'preset'} | " + " | ".join(cells) + " |")
         if best is not None:
             chosen[algorithm] = trials_of(search, algorithm)[best]
     os.makedirs(out, exist_ok=True)
     header = ["algorithm", "trial", "options", "return", "return_std", "lost_rate"]
     header += ["wall_seconds", "chosen"]
     write_atomically(os.path.join(out, "trials.csv"), csv_text(header, rows))
-    text = "# The options of the best trial of each algorithm; none: the preset as it is.\n"
+    text = "# The options of the best trial of each algorithm. No options: the unchanged preset.\n"
     text += yaml.safe_dump(chosen, sort_keys=False)
     write_atomically(os.path.join(out, "chosen.yaml"), text)
     text = yaml.safe_dump(dataclasses.asdict(search), sort_keys=False, width=96)

@@ -42,7 +42,7 @@ CONDITION_LABELS = {
 }
 NOTHING = "–"
 TEXT_COLUMNS = {"Algorithm", "Condition", "Flown by", "Method", "Scenario", "Seed IDs", "Variant"}
-TEXT_COLUMNS |= {"of these", "Beside", "Knows"}
+TEXT_COLUMNS |= {"Networks", "Best other", "Knows"}
 
 
 def paper_value(paper, table, algorithm, metric, *key):

@@ -12,12 +12,12 @@ from stg_study.tables import NOTHING, cell, markdown
 OPTIONS = [
     ("γ", "gamma"),
     ("Learning rate", "lr"),
-    ("of the critic", "critic-lr"),
-    ("left at the end", "lr-final"),
+    ("Critic's rate", "critic-lr"),
+    ("Final share of rates", "lr-final"),
     ("Actor", "actor-hidden"),
     ("Critic", "critic-hidden"),
     ("Environments", "envs"),
-    ("Steps an update", "horizon"),
+    ("Steps per update", "horizon"),
     ("Batch", "minibatch batch"),
     ("Epochs or replayed", "epochs replayed"),
     ("n-step", "n-step"),
@@ -52,8 +52,8 @@ def parameters(text):
 def cost_table(study, results, scenario):
     """Networks, arithmetic and time of every method, and the number of its trainings that reached each
     threshold."""
-    header = ["Method", "Seeds", "Parameters", "of these", "MFLOP/step", "Steps", "Wall s"]
-    header += ["Lose nothing"] + [f"Reach {t}" for t in THRESHOLDS[1:]] + ["s to 1030, median"]
+    header = ["Method", "Seeds", "Parameters", "Networks", "MFLOP/step", "Steps", "Wall s"]
+    header += ["No loss"] + [f"Reach {t}" for t in THRESHOLDS[1:]] + ["s to 1030, median"]
     rows = []
     for method in study.methods:
         runs = results.runs_of(scenario, method.name)
