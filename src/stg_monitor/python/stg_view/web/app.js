@@ -1,11 +1,12 @@
-/* The page itself: it loads a recording or follows a live one, keeps the time, and has its parts draw.
- * Files: recording.js, story.js, shapes.js, lines.js, camera.js, scene.js, sound.js, plots.js, network.js, table.js, overlay.js, then this. */
+/* The page itself. It loads a recording or follows a live run, keeps the shown time, and calls its parts to draw.
+ * Order of the files: recording.js, story.js, shapes.js, lines.js, camera.js, scene.js, sound.js, plots.js, network.js, table.js, overlay.js,
+ * then this one. */
 (function (STG) {
   "use strict";
 
   const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 5, 10, 20, 50, 100, 500];
   const by = (id) => document.getElementById(id);
-  /** Changes a text only where it is another one: the browser lays the page out anew otherwise. */
+  /** Sets a text only if it changes. Otherwise the browser would compute the layout of the page again. */
   const put = (element, text) => { if (element.textContent !== text) element.textContent = text; };
 
   class App {
@@ -47,7 +48,7 @@
         if (this.hasScene) this.makeScene();
         this.listen();
         this.took();
-        // A training has no time and nobody in the water.
+        // A training has no time to choose and no AUVs to show.
         by("transport").hidden = by("tabs").hidden = !this.hasScene && r.agents === 0 && r.curves.length > 0;
         this.show(r.agents === 0 && r.curves.length > 0 ? "plots" : this.hasScene ? "story" : "network");
         this.speed = this.pace();
@@ -66,11 +67,11 @@
       try {
         this.scene = new STG.Scene(this, by("scene"));
       } catch (error) {
-        // A browser without WebGL still has plots, tables and the network.
+        // Without WebGL, the page still shows plots, tables and the network.
         this.hasScene = false;
         document.body.classList.add("flat");
         by("stage").hidden = true;
-        this.recording.notes.push("This browser has no WebGL; the scene is left out.");
+        this.recording.notes.push("This browser has no WebGL, so the scene is not shown.");
       }
     }
 
@@ -79,7 +80,7 @@
       by("failure").hidden = false;
     }
 
-    /** A speed at which the run takes about a minute. */
+    /** Returns a speed at which the run takes about a minute. */
     pace() {
       const wanted = (this.recording.end - this.recording.start) / 60;
       return SPEEDS.reduce((best, s) => (Math.abs(Math.log(s / wanted)) < Math.abs(Math.log(best / wanted)) ? s : best), 1);
@@ -94,7 +95,7 @@
       by("speed").value = this.speed;
     }
 
-    /** #t=12.5&auv=2&tab=plots&theme=dark: a link to a moment. */
+    /** Reads the part of the address after #, e.g. #t=12.5&auv=2&tab=plots&theme=dark. So a link can show a certain time. */
     readHash() {
       const wanted = new URLSearchParams(location.hash.slice(1));
       if (wanted.has("theme")) this.setTheme(wanted.get("theme"));
@@ -104,7 +105,7 @@
       if (wanted.has("t")) this.seek(this.recording.start + Number(wanted.get("t")));
     }
 
-    /** Follows a live run. The first messages are all that happened before. */
+    /** Follows a live run. The first messages contain all steps before the connection. */
     connect() {
       const socket = new WebSocket(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/stream`);
       socket.binaryType = "arraybuffer";
@@ -128,12 +129,12 @@
       };
     }
 
-    /** A run that begins anew has a page that begins anew. */
+    /** Waits for a new run, and then loads the page again. */
     reconnect() {
       fetch("/alive").then(() => location.reload(), () => setTimeout(() => this.reconnect(), 2000));
     }
 
-    /** New messages came. */
+    /** Updates the page after new messages. */
     took() {
       this.transmissions.update();
       const r = this.recording, newEvents = this.story.update();
@@ -141,7 +142,7 @@
       this.overlay.update();
       const notes = [...r.notes, ...(r.meta.notes || [])];
       if (r.thinned) notes.push(`Steps are thinned: one in ${r.thinned} is shown.`);
-      if (r.packetsDropped) notes.push("Only the newest packets are shown; counts are of all.");
+      if (r.packetsDropped) notes.push("Only the newest packets are shown; counts include all packets.");
       by("notes").hidden = notes.length === 0;
       by("notes").textContent = notes.join(" ");
       this.track.dirty = true;
@@ -150,7 +151,7 @@
 
     // ---- Time
 
-    /** Whether the newest is shown, always, of a live run. */
+    /** In a live run: always shows the newest step, or stops this. */
     follow(on) {
       this.following = on && !this.closed;
       if (this.following) this.t = this.recording.end;
@@ -262,7 +263,7 @@
       else if (this.tab === "table") this.live.draw();
     }
 
-    // ---- Hands
+    // ---- Input
 
     listen() {
       by("play").onclick = () => this.play();

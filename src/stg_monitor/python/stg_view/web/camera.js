@@ -1,9 +1,9 @@
-/* The camera of the scene: it follows the swarm, a target or an AUV, or shows the whole region, until a
- * hand takes it. */
+/* The camera of the scene. It follows the swarm, a target or an AUV, or shows the whole region, until the user
+ * moves it. */
 (function (STG) {
   "use strict";
 
-  /** What the scene looks through; the scene itself is built on it. */
+  /** The base class of the scene, with its camera. */
   class View {
     constructor(app, canvas) {
       this.app = app;
@@ -16,13 +16,13 @@
       this.mode = "swarm";
     }
 
-    /** Metres of one pixel at a point. */
+    /** Returns the size of a pixel at a point [m]. */
     metresPerPixel(point) {
       const distance = this.camera.position.distanceTo(point);
       return 2 * distance * Math.tan(this.camera.fov * Math.PI / 360) / Math.max(1, this.height);
     }
 
-    /** What the camera looks at, and how far it is to be: null where that is not known. */
+    /** Returns the centre and the radius of the part that the camera shall show, or null if they are unknown. */
     subject(row) {
       const { recording: r, selected } = this.app;
       const around = (points, least) => {
@@ -50,7 +50,7 @@
       this.app.redraw();
     }
 
-    /** Moves the camera with its subject; the distance is the user's once the camera was moved by hand. */
+    /** Moves the camera with its subject. If the user has moved the camera, its distance stays. */
     follow(row) {
       const subject = this.subject(row);
       if (subject === null) return;
@@ -76,14 +76,14 @@
       this.camera.updateMatrixWorld();
     }
 
-    /** Place of a world's point in the canvas [px], or null behind the camera. */
+    /** Returns the position of a point of the world in the canvas [px], or null if it is behind the camera. */
     project(p) {
       const v = new THREE.Vector3(...p).project(this.camera);
       if (v.z > 1 || v.z < -1) return null;
       return [(v.x + 1) / 2 * this.width, (1 - v.y) / 2 * this.height];
     }
 
-    /** The AUV under a point of the canvas, or -1. */
+    /** Returns the AUV at a point of the canvas, or -1. */
     pick(x, y) {
       let best = -1, nearest = 26;
       this.vehicles.forEach((one, i) => {

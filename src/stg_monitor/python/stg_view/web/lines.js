@@ -1,19 +1,19 @@
-/* All lines that move, in one drawing: where the processor draws, each object costs more than its lines do.
- * Each line is a slim rectangle whose width is given in pixels and whose edges are soft. Its four corners have
- * data of their own: instances would take the processor six times as long. Lines are put anew for each
- * drawing, into arrays that grow when they are full. World axes are ENU, z up, metres. */
+/* All moving lines, as one object: without a graphics card, an object costs more time than its lines. Each line is
+ * a thin rectangle with a width in pixels and soft edges. Each of its four corners has its own data, because
+ * instances would take six times as long without a graphics card. Lines are added again for each drawing, to
+ * arrays that grow when they are full. World axes are ENU, z up, metres. */
 (function (STG) {
   "use strict";
 
-  const MOST = 24000;  // segments; what is more is left out
-  const FIRST = 3000;  // segments that there is room for at first
+  const MOST = 24000;  // largest number of segments; others are left out
+  const FIRST = 3000;  // room for this number of segments at the start
   const CIRCLE = 72, THIN = 1.2;
-  const PARTS = [12, 18, 24, 36];  // of circles that are small on the screen
-  const CURVED = 4.5;  // parts of a circle by the root of its radius [pixels]: none is a quarter of a pixel off
+  const PARTS = [12, 18, 24, 36];  // numbers of segments of circles that are small on the screen
+  const CURVED = 4.5;  // segments divided by the root of the radius [pixels]; the error is below a quarter of a pixel
   const COS = Float64Array.from({ length: CIRCLE + 1 }, (_, k) => Math.cos(2 * Math.PI * k / CIRCLE));
   const SIN = Float64Array.from({ length: CIRCLE + 1 }, (_, k) => Math.sin(2 * Math.PI * k / CIRCLE));
   const CORNERS = [0, -1, 0, 1, -1, 0, 1, 1, 0, 0, 1, 0], TRIANGLES = [0, 1, 2, 0, 2, 3];
-  // A corner is (end, side). What lies behind the near plane is cut off before the division by w.
+  // A corner is (end, side). The part of a line behind the near plane is cut off before the division by w.
   const VERTEX = `attribute vec3 head; attribute vec4 tail; attribute vec4 tint;
     uniform vec2 screen; varying vec4 seen; varying float across; varying float reach;
     void main() {
@@ -48,7 +48,7 @@
       this.makeRoom(FIRST);
     }
 
-    /** Makes room for so many segments, and keeps those that were put. */
+    /** Makes room for a number of segments, and keeps the present ones. */
     makeRoom(room) {
       const geometry = new THREE.BufferGeometry(), corners = new Int8Array(12 * room), index = new Uint32Array(6 * room);
       for (let k = 0; k < room; ++k) {
@@ -63,7 +63,7 @@
         geometry.setAttribute(name, attribute);
         return attribute;
       };
-      this.tail = add("tail", new Float32Array(16 * room), 4, this.tail);  // and its width
+      this.tail = add("tail", new Float32Array(16 * room), 4, this.tail);  // the fourth number is the width
       this.head = add("head", new Float32Array(12 * room), 3, this.head);
       this.tint = add("tint", new Uint8Array(16 * room), 4, this.tint);
       this.object.geometry.dispose();
@@ -71,21 +71,21 @@
       this.room = room;
     }
 
-    /** Begins a drawing on a canvas of so many pixels, seen by a camera. */
+    /** Begins a drawing on a canvas with this size [pixels], with a camera. */
     begin(width, height, camera) {
       this.count = 0;
       this.screen.set(width / 2, height / 2);
       this.eye = camera.position;
-      this.perPixel = 2 * Math.tan(camera.fov * Math.PI / 360) / Math.max(1, height);  // metres, at a distance of one
+      this.perPixel = 2 * Math.tan(camera.fov * Math.PI / 360) / Math.max(1, height);  // metres, at a distance of one metre
     }
 
-    /** Sets the colour [red, green, blue], the opacity and the width [pixels] of what comes. */
+    /** Sets the colour [red, green, blue], the opacity and the width [pixels] of the next lines. */
     ink(rgb, opacity = 1, width = THIN) {
       for (let k = 0; k < 16; ++k) this.pen[k] = 255 * (k % 4 < 3 ? rgb[k % 4] : opacity) + 0.5;
       this.width = width;
     }
 
-    /** A line from p to q, in the colour that was set. */
+    /** Adds a line from p to q. */
     segment(px, py, pz, qx, qy, qz) {
       if (this.count >= this.room) {
         if (this.room >= MOST) return;
@@ -100,16 +100,16 @@
       }
     }
 
-    /** Places between two points of a circle of that radius: it has as many points as can be told apart. */
+    /** Returns the step between two used points of a circle. A circle that is small on the screen uses fewer points. */
     strideOf(x, y, z, radius) {
-      const away = Math.hypot(this.eye.x - x, this.eye.y - y, this.eye.z - z) - radius;  // of its nearest point, at least
+      const away = Math.hypot(this.eye.x - x, this.eye.y - y, this.eye.z - z) - radius;  // at most the distance of its nearest point
       if (!(away > 0)) return 1;
       const wanted = CURVED * Math.sqrt(radius / (away * this.perPixel));
       const parts = PARTS.find((n) => n >= wanted);
       return parts ? CIRCLE / parts : 1;
     }
 
-    /** A level circle around a point, or an ellipse whose half axis a is turned by an angle from east. */
+    /** Adds a horizontal circle around a point, or an ellipse. Its half axis a is turned by an angle from east. */
     circle(x, y, z, a, b = a, angle = 0) {
       const c = Math.cos(angle), s = Math.sin(angle), stride = this.strideOf(x, y, z, Math.max(a, b));
       let px = x + c * a, py = y + s * a;
@@ -121,7 +121,7 @@
       }
     }
 
-    /** A broken line from p to q. */
+    /** Adds a dashed line from p to q. */
     broken(p, q, dashes = 7) {
       for (let k = 0; k < dashes; ++k) {
         const u = k / dashes, v = (k + 0.5) / dashes, at = (a, share) => p[a] + share * (q[a] - p[a]);
@@ -129,7 +129,7 @@
       }
     }
 
-    /** Hands what was put to the drawing; only that is sent to the card. */
+    /** Ends a drawing: shows the added lines. Only their data is sent to the graphics card. */
     end() {
       for (const attribute of [this.tail, this.head, this.tint]) {
         attribute.updateRange.count = 4 * attribute.itemSize * Math.max(1, this.count);

@@ -1,5 +1,5 @@
-/* The network: which node hears which as a matrix, which spoke when as a time line, and what became of one
- * transmission. It needs packets only, no vehicles. */
+/* The network: a matrix of the links, a time line of the transmissions, and the receivers of one transmission. It
+ * only needs packets, no vehicles. */
 (function (STG) {
   "use strict";
 
@@ -13,7 +13,7 @@
   };
   STG.element = element;
 
-  /** A canvas that is sharp on every screen; returns its context, in CSS pixels. */
+  /** Sets the size of a canvas so that it is sharp on every screen. Returns its context, in CSS pixels. */
   STG.sharp = (canvas, width, height) => {
     const ratio = window.devicePixelRatio || 1;
     canvas.width = Math.round(width * ratio);
@@ -33,12 +33,12 @@
       this.tip.hidden = true;
       root.append(
         this.cards = element("div", "cards"),
-        element("h2", "", "Which node spoke when, and which heard it"),
+        element("h2", "", "Transmissions over time"),
         this.lineHint = element("p", "hint"),
         this.line = element("canvas", "wide"),
         this.detail = element("div"),
-        element("h2", "", "Which node hears which"),
-        element("p", "hint", "Rows speak, columns hear; a full cell is a link on which every packet arrives."),
+        element("h2", "", "Links between the nodes"),
+        element("p", "hint", "Rows are senders, columns are receivers. A cell is full if all packets of the link arrive."),
         this.matrix = element("canvas", "wide"),
         element("h2", "", "Fates of all packets"),
         this.fates = element("div"));
@@ -117,7 +117,7 @@
           ctx.fillRect(x, y, cell - gap, cell - gap);
           ctx.globalAlpha = 1;
           if (all === 0) continue;
-          // Filled from below: the share is a height, not a hue alone.
+          // The cell is filled from below, so that the share is a height and not only a colour.
           const share = link[0] / all;
           ctx.fillStyle = colours.heard;
           ctx.fillRect(x, y + (cell - gap) * (1 - share), cell - gap, (cell - gap) * share);
@@ -143,8 +143,8 @@
       const width = Math.max(200, this.root.clientWidth - 24), ctx = STG.sharp(this.line, width, ROW * n + 22);
       const [from, to] = this.window(), x = (time) => LEFT + (width - LEFT - 6) * (time - from) / (to - from);
       this.x = { from, to, width };
-      this.lineHint.textContent = `${STG.clock(from - r.start)} to ${STG.clock(to - r.start)}. A bar is a transmission: filled as far as receivers heard it. ` +
-        "Marks in the rows below and above are receivers that missed it. Click one.";
+      this.lineHint.textContent = `${STG.clock(from - r.start)} to ${STG.clock(to - r.start)}. A bar is a transmission; its filled part is the share of receivers that heard it. ` +
+        "Marks in other rows are receivers that missed it. Click a bar for details.";
       ctx.font = "11px system-ui, sans-serif";
       ctx.textBaseline = "middle";
       for (let i = 0; i < n; ++i) {

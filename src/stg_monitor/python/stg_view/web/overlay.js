@@ -1,12 +1,12 @@
-/* What lies over the scene and below it: colours of the themes, labels, legend, compass, scale bar, title,
- * and the track of time with its events. */
+/* The parts over and below the scene: labels, legend, compass, scale bar, title, and the time bar with its events.
+ * Also the colours of the themes. */
 (function (STG) {
   "use strict";
 
   const by = (id) => document.getElementById(id);
   const { element } = STG;
 
-  /** The colours of a theme, as CSS has them and as canvases need them. */
+  /** Returns the colours of a theme, as CSS has them and in the form for canvases. */
   STG.coloursOf = (name) => {
     const style = getComputedStyle(document.documentElement);
     const of = (key) => style.getPropertyValue(`--${key}`).trim();
@@ -28,9 +28,9 @@
     return c;
   };
 
-  const LETTER = 6.6, LABEL_HEIGHT = 17;  // of a label [pixels], so that none need be measured
+  const LETTER = 6.6, LABEL_HEIGHT = 17;  // width of a letter and height of a label [pixels]; measuring each label would be slow
 
-  /** Where a label stands beside its point: where no other does. A reason of a loss that finds no place is left out. */
+  /** Returns a free position for a label near its point. The label for the reason of a loss is left out if there is none. */
   function placeOf([x, y], { text, loss, chosen }, taken) {
     const width = LETTER * text.length + 8, middle = y - LABEL_HEIGHT / 2;
     const places = [[x + 9, middle], [x - 9 - width, middle], [x - width / 2, y - 12 - LABEL_HEIGHT], [x - width / 2, y + 12]];
@@ -43,7 +43,7 @@
   class Overlay {
     constructor(app) { this.app = app; this.names = []; }
 
-    /** Texts that change with what is known of the run. */
+    /** Updates the texts that depend on the recording. */
     update() {
       const { recording: r, scene } = this.app, m = r.meta;
       by("subtitle").textContent = [m.scenario, m.condition && m.condition !== "nominal" ? m.condition : "", m.policy && String(m.policy).split("/").pop(),
@@ -70,7 +70,7 @@
         add(colours.stable, "tracking band", "ring");
         if (r.meta.sensing_range_m > 0) add(colours.search, "sensing range", "ring");
       }
-      // Every recording has the column; where no sensor measures ranges it holds none.
+      // Every recording has the column, but it is empty if no sensor measures ranges.
       const ranges = r.steps.column("range");
       if (ranges && ranges.data.subarray(0, Math.min(20000, r.steps.count * ranges.width)).some((x) => x > 0)) {
         add(colours.approach, "range just measured", "ring");
@@ -120,7 +120,7 @@
     drawCompass() {
       const { scene, colours } = this.app, canvas = by("compass"), ctx = canvas.getContext("2d");
       const v = scene.controls.target.clone().sub(scene.camera.position);
-      const angle = Math.atan2(v.x, v.y);  // of the view, from north, clockwise
+      const angle = Math.atan2(v.x, v.y);  // direction of the view, from north, clockwise
       const key = `${angle.toFixed(3)}/${colours.name}`;
       if (this.compassKey === key) return;
       this.compassKey = key;
@@ -176,8 +176,8 @@
       const dialog = by("keys");
       if (dialog.open) { dialog.close(); return; }
       const table = element("table");
-      for (const [key, text] of [["space", "play, pause"], ["← →", "one step; with shift ten"], ["N, P", "next event, event before"], ["+ −", "faster, slower"],
-        ["Home, End", "begin, end"], ["1 … 5", "camera: swarm, target, AUV, region, above"], ["[ ]", "choose an AUV; Esc: none"],
+      for (const [key, text] of [["space", "play, pause"], ["← →", "one step; with shift ten"], ["N, P", "next event, previous event"], ["+ −", "faster, slower"],
+        ["Home, End", "start, end"], ["1 … 5", "camera: swarm, target, AUV, region, above"], ["[ ]", "choose an AUV; Esc: none"],
         ["E G W T", "events, graphs, network, table"], ["D", "light or dark"], ["?", "these keys"]]) {
         const line = element("tr"), cell = element("td");
         cell.append(element("kbd", "", key));
@@ -190,7 +190,7 @@
     }
   }
 
-  /** The track of time: drag to scrub, marks are events. */
+  /** The time bar. Its marks are events. Drag it to change the time. */
   class Track {
     constructor(app, canvas) {
       this.app = app;
@@ -204,7 +204,7 @@
       canvas.addEventListener("pointerup", () => { this.down = false; });
     }
 
-    /** Below each other: share of AUVs in each phase, marks of events, the present. */
+    /** Draws from top to bottom: the share of AUVs in each phase, and marks of events; then the shown time. */
     draw() {
       const { recording: r, colours, t, events } = this.app;
       const width = this.canvas.clientWidth, height = 34;

@@ -1,11 +1,11 @@
-/* Plots that share the time cursor (uPlot). Every plot is a list of lines over the shown steps; the chosen
- * AUV's own line is strong, the others' are thin. A click sets the time. */
+/* Plots with a common time cursor (uPlot). Every plot is a list of lines over the shown steps. The line of the
+ * chosen AUV is thick, the others are thin. A click sets the time. */
 (function (STG) {
   "use strict";
 
   const MOST_POINTS = 1500, HEIGHT = 150, LEAST_LOG = 0.01, MANY = 9, LEAST_WIDTH = 400, GAP = 20;
 
-  /** Rows of the steps that are plotted: all, or evenly spread ones. */
+  /** Returns the rows of the plotted steps: all of them, or every n-th one. */
   function plottedRows(recording) {
     const count = recording.steps.count, stride = Math.max(1, Math.ceil(count / MOST_POINTS));
     const rows = [];
@@ -15,7 +15,7 @@
   }
   const orNull = (x) => (Number.isFinite(x) ? x : null);
 
-  /** {label, unit, data} of every plot that the recording has numbers for. */
+  /** Returns all plots for which the recording has numbers. */
   function plotsOf(app) {
     const { recording: r, selected } = app, rows = plottedRows(r), plots = [];
     const t = rows.map((row) => r.steps.at("t", row));
@@ -40,7 +40,7 @@
       }
     }
     if (steps.has("age")) add("Age of the newest observation in the estimate", "s", perAuv((row, i) => steps.at("age", row, i)));
-    if (steps.has("neighbour_age")) add("Age of information about the others", "s", perAuv((row, i) => steps.at("neighbour_age", row, i)));
+    if (steps.has("neighbour_age")) add("Age of information about other AUVs", "s", perAuv((row, i) => steps.at("neighbour_age", row, i)));
     const fates = packetsOverTime(app, t);
     if (fates) plots.push(fates);
     if (steps.has("energy")) add("Energy of the modem", "J", perAuv((row, i) => steps.at("energy", row, i)));
@@ -59,7 +59,7 @@
     return plots;
   }
 
-  /** Packets by fate and time, each fate on top of the one before. */
+  /** Returns the plot of packets by fate and time; the fates are stacked. */
   function packetsOverTime(app, t) {
     const { recording: r, selected } = app;
     if (r.packets.count === 0) return null;
@@ -87,14 +87,14 @@
     };
   }
 
-  /** The range of an axis. Ticks of a line that is all but level would be closer than numbers can tell. */
+  /** Returns the range of an axis. If a line is almost level, the range is wider, so that ticks have different numbers. */
   function rangeOf(u, low, high) {
     if (low === null || (low === 0 && high === 0)) return [0, 1];
     const least = 1e-3 * Math.max(Math.abs(low), Math.abs(high)), lack = Math.max(0, least - (high - low)) / 2;
     return uPlot.rangeNum(low - lack, high + lack, 0.1, true);
   }
 
-  /** Ticks of a time that is counted from a start, which no round number need be. */
+  /** Returns ticks for a time that is counted from a start. The start need not be a round number. */
   function ticksFrom(start, low, high, every) {
     const ticks = [];
     for (let k = Math.ceil((low - start) / every - 1e-6); start + k * every <= high + 1e-6 * every; ++k) ticks.push(start + k * every);
@@ -108,14 +108,14 @@
       this.charts = [];
     }
 
-    /** Makes all plots anew: of another recording, choice, theme or width. */
+    /** Makes all plots again, after a change of recording, chosen AUV, theme or width. */
     build() {
       this.charts.forEach((c) => c.destroy());
       this.element.textContent = "";
       this.charts = [];
       const plots = plotsOf(this.app);
       if (plots.some((plot) => plot.lines.some((l) => l.auv !== undefined))) this.element.append(this.who());
-      // A page without a scene has room for plots beside each other.
+      // A page without a scene has room for several plots in a row.
       const all = this.element.clientWidth - 24, beside = this.app.hasScene ? 1 : Math.max(1, Math.floor(all / LEAST_WIDTH));
       const width = Math.max(240, (all - GAP * (beside - 1)) / beside);
       for (const plot of plots) {
@@ -142,7 +142,7 @@
       this.now();
     }
 
-    /** Whose line has which colour; where they are too many for that, all are grey but the chosen one's. */
+    /** Returns the legend with the colours of the AUVs. If there are many AUVs, only the chosen one has a colour. */
     who() {
       const { recording: r, colours, selected } = this.app, line = STG.element("div", "who");
       for (let i = 0; i < r.agents; ++i) {
@@ -155,7 +155,7 @@
       return line;
     }
 
-    /** What the lines of a plot are that has no lines of AUVs. */
+    /** Returns the legend of a plot that has no lines of AUVs. */
     keysOf(plot) {
       const { colours } = this.app, line = STG.element("div", "keys-of");
       plot.lines.forEach((l, k) => {
@@ -219,15 +219,15 @@
       }
     }
 
-    /** The line of the time that is shown lies over the chart, which need not be drawn anew for it. */
+    /** Places the line of the shown time. It lies over the chart, so the chart need not be drawn again. */
     playhead(u) {
       if (!u.head) return;
       const x = u.valToPos(this.app.t, "x");
-      u.head.hidden = !(x >= 0 && x <= u.bbox.width / devicePixelRatio);  // the element itself would be laid out to be asked
+      u.head.hidden = !(x >= 0 && x <= u.bbox.width / devicePixelRatio);  // reading the size of the element would force a layout
       if (!u.head.hidden) u.head.style.transform = `translateX(${x.toFixed(1)}px)`;
     }
 
-    /** Shows the values at the cursor, or at the time that is shown. */
+    /** Shows the values at the cursor, or at the shown time. */
     read(u, plot) {
       if (!u.readout) return;
       let at = u.cursor.idx;
@@ -250,7 +250,7 @@
         : shown.map(([l, v]) => `${l.label} ${STG.number(v)}`).join("   ");
     }
 
-    /** Moves the line of the time that is shown. */
+    /** Moves the line of the shown time in all plots. */
     now() {
       this.charts.forEach((c) => {
         this.playhead(c);

@@ -1,17 +1,17 @@
-/* The recording that a page shows: it eats messages and keeps their columns.
+/* The recording of a page. It reads messages and keeps their columns.
  *
- * A message is what a file and a websocket bring alike: two little-endian uint32 (bytes of header and
- * body), a JSON header, a body of columns (docs/recording.md). Nothing here touches the document, and
- * nothing of a recording is ever taken for HTML.
+ * Files and websockets have the same messages: two little-endian uint32 (bytes of header and body), a JSON
+ * header, and a body of columns (docs/recording.md). This file does not change the document, and no text of a
+ * recording is used as HTML.
  *
- * Memory is bounded: past a number of rows every second step is dropped, and the older half of the
- * packets; counts of packets go on. The page says so (`thinned`).
+ * Memory is limited. Above a number of rows, every second step is dropped, and so is the older half of the
+ * packets. The counts of packets still include them. The page shows a note about this (`thinned`).
  */
 (function (STG) {
   "use strict";
 
   const MAGIC = "STGVIEW1";
-  const STEP_BYTES = 24e6;  // of all steps that are kept
+  const STEP_BYTES = 24e6;  // largest size of all kept steps
   const MOST_PACKETS = 250000;
   const TYPES = {
     f8: Float64Array, f4: Float32Array, i4: Int32Array, u1: Uint8Array,
@@ -20,7 +20,7 @@
     "burst of noise", "discarded in the queue", "not acquired", "shadow", "left the network"];
   STG.PHASES = ["search", "approach", "stable", "lost"];
 
-  /** Index of the last of the first `count` ascending numbers that is <= value, or -1. */
+  /** Among the first `count` ascending numbers, returns the index of the last one that is <= value, or -1. */
   STG.lastUpTo = (numbers, count, value) => {
     let low = 0, high = count;
     while (low < high) {
@@ -35,15 +35,15 @@
     constructor() {
       this.count = 0;
       this.room = 0;
-      this.expected = 0;  // rows that are to come, where that is known
+      this.expected = 0;  // number of all rows, if it is known
       this.columns = {};
     }
 
     has(name) { return name in this.columns; }
-    /** {data, width} of a column; undefined where there is none. */
+    /** Returns {data, width} of a column, or undefined if there is none. */
     column(name) { return this.columns[name]; }
     width(name) { return this.columns[name].width; }
-    /** The number in row `row`, place `k` of a column; NaN where there is no such column. */
+    /** Returns number `k` in a row of a column, or NaN if there is no such column. */
     at(name, row, k = 0) {
       const c = this.columns[name];
       return c === undefined || k >= c.width ? NaN : c.data[row * c.width + k];
@@ -51,7 +51,7 @@
 
     append(rows, columns) {
       const enough = this.count + rows;
-      if (this.room === 0 && rows >= this.expected) {  // they are all: they stay where they came
+      if (this.room === 0 && rows >= this.expected) {  // these are all rows: use their arrays without a copy
         for (const { name, width, data } of columns) this.columns[name] = { width, data };
         this.room = this.count = rows;
         return;
@@ -75,7 +75,7 @@
       this.count = enough;
     }
 
-    /** Keeps the rows of which keep(row) is true. */
+    /** Keeps only the rows for which keep(row) is true. */
     keep(keep) {
       let to = 0;
       for (let row = 0; row < this.count; ++row) {
@@ -87,7 +87,7 @@
         }
         ++to;
       }
-      // What comes without a column must not find there what was before.
+      // Later rows may come without a column. Then the old values must not be there.
       for (const c of Object.values(this.columns)) c.data.fill(c.data instanceof Uint8Array ? 255 : NaN, to * c.width);
       this.count = to;
     }
@@ -97,14 +97,14 @@
         .reduce((sum, c) => sum + c.width * c.data.BYTES_PER_ELEMENT, 0);
     }
 
-    /** The last row whose ascending column is <= value, or -1. */
+    /** Returns the last row in which an ascending column is <= value, or -1. */
     find(name, value) { return this.columns[name] ? STG.lastUpTo(this.columns[name].data, this.count, value) : -1; }
   }
 
-  /** Number of the link from one node to another. */
+  /** Returns the number of the link from one node to another. */
   const keyOf = (source, receiver) => source * 65536 + receiver;
 
-  /** Everything that a page shows. */
+  /** All data that a page shows. */
   class Recording {
     constructor() {
       this.meta = {};
@@ -117,7 +117,7 @@
       this.terms = [];
       this.links = new Map();  // by keyOf: counts by fate
       this.fates = new Array(STG.FATES.length).fill(0);
-      this.totals = null;      // counts of a log that is longer than what is shown
+      this.totals = null;      // counts of the whole log, if the recording has only a part of it
       this.thinned = 0;
       this.version = 0;        // grows with each message
     }
@@ -149,10 +149,10 @@
       return this.rangeValue;
     }
 
-    /** Eats a whole file: the magic, then messages. A cut last one is noted and left out. */
+    /** Reads a whole file: the magic, then messages. If the last message is incomplete, it is left out, with a note. */
     takeFile(buffer) {
       const magic = String.fromCharCode(...new Uint8Array(buffer, 0, Math.min(8, buffer.byteLength)));
-      if (magic !== MAGIC) throw new Error("this is no recording");
+      if (magic !== MAGIC) throw new Error("this is not a recording");
       const messages = [];
       let at = 8;
       while (at + 8 <= buffer.byteLength) {
@@ -162,18 +162,18 @@
         messages.push(this.read(buffer, at));
         at += length;
       }
-      for (const [header] of messages) {  // tables of the right size need not grow
+      for (const [header] of messages) {  // find the size of the tables, so that they need not grow
         const table = { steps: this.steps, packets: this.packets }[header.kind];
         if (table && header.rows > 0) table.expected += header.rows;
       }
       for (const message of messages) this.put(...message);
-      if (at < buffer.byteLength) this.notes.push("The recording is cut off; its whole part is shown.");
+      if (at < buffer.byteLength) this.notes.push("The recording is incomplete; the page shows its complete messages.");
     }
 
-    /** Eats the message at `at` of an ArrayBuffer. */
+    /** Reads the message at `at` of an ArrayBuffer. */
     take(buffer, at = 0) { this.put(...this.read(buffer, at)); }
 
-    /** [header, columns] of the message at `at`. */
+    /** Returns [header, columns] of the message at `at`. */
     read(buffer, at) {
       const view = new DataView(buffer, at);
       const headerBytes = view.getUint32(0, true);
@@ -237,27 +237,27 @@
       }
     }
 
-    /** Packets by fate: of the whole log, where the recording holds only a part of it. */
+    /** Returns the number of packets by fate, of the whole log even if the recording has only a part of it. */
     counts() { return this.totals ? this.totals.fates : this.fates; }
-    /** Counts by fate of the link source -> receiver, or null. */
+    /** Returns the counts by fate of the link source -> receiver, or null. */
     link(source, receiver) {
       return (this.totals ? this.totals.links[`${source}>${receiver}`] : this.links.get(keyOf(source, receiver))) || null;
     }
 
-    /** Row of the step that is shown at time t; -1: none. */
+    /** Returns the row of the shown step at time t, or -1 if there is none. */
     row(t) { return Math.max(this.steps.find("t", t), this.steps.count > 0 ? 0 : -1); }
     episodeAt(t) {
       let found = null;
       for (const e of this.episodes) if (e.start <= t + 1e-9) found = e;
       return found;
     }
-    /** The target that AUV i follows in a row, which it may choose itself; -1: there are none. */
+    /** Returns the target that AUV i follows in a row, or -1 if there are no targets. AUVs may choose targets. */
     targetOf(i, row) {
       const chosen = this.steps.at("followed", row, i);
       return chosen < this.targets ? chosen : this.targets > 0 ? i % this.targets : -1;
     }
 
-    /** [error, NEES] of AUV i's estimate of its target in a row; NaN where it has none. */
+    /** Returns [error, NEES] of AUV i's estimate of its target in a row; NaN if it has none. */
     estimateError(row, i) {
       const k = this.targetOf(i, row);
       if (k < 0 || !this.steps.has("estimate")) return [NaN, NaN];
@@ -275,7 +275,7 @@
         2 * (e[0] * e[1] * adj[1] + e[0] * e[2] * adj[2] + e[1] * e[2] * adj[4])) / det;
       return [error, nees];
     }
-    /** Stated standard deviation of that estimate, per axis [m]. */
+    /** Returns the estimate's own standard deviation, per axis [m]. */
     estimateStd(row, i) {
       const c = (a) => this.steps.at("covariance", row, 6 * i + a);
       return Math.sqrt((c(0) + c(3) + c(5)) / 3);

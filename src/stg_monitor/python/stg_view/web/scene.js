@@ -1,23 +1,23 @@
-/* The scene in three dimensions: water, bottom, obstacles, AUVs, targets, beliefs and tracks, drawn for
- * one time of a recording. World axes are ENU, z up, metres. Shapes are made by shapes.js, the camera is
- * moved by camera.js, packets are drawn by sound.js, lines that move by lines.js.
+/* The scene in three dimensions: water, bottom, obstacles, AUVs, targets, estimates and tracks, drawn for one time
+ * of a recording. World axes are ENU, z up, metres. shapes.js makes the shapes, camera.js moves the camera,
+ * sound.js draws packets, lines.js draws moving lines.
  *
- * Everything that has no size of its own on the screen (hulls, marks) is drawn as large as the camera's
- * distance asks for, so that boxes of 2 m and seas of 4 km look alike.
+ * The size of hulls and marks depends on the distance of the camera. So they are visible both in a box of 2 m and in
+ * a sea of 4 km.
  */
 (function (STG) {
   "use strict";
 
   const HULL_PIXELS = 15, MARK_PIXELS = 5, TRAIL = 400, TRAIL_SHARE = 0.06, TRAIL_STEPS = 60;
-  const APART = 8;  // pixels between two points of a way, at most about
-  /** Whether the processor draws: smooth edges would then cost half of the frames. */
+  const APART = 8;  // approximate largest distance of two points of a track [pixels]
+  /** Returns true if there is no graphics card. Then smooth edges would halve the number of frames. */
   function drawnBySoftware(gl) {
     const info = gl.getExtension("WEBGL_debug_renderer_info");
     const name = info ? gl.getParameter(info.UNMASKED_RENDERER_WEBGL) : "";
     return /swiftshader|llvmpipe|software/i.test(name);
   }
 
-  /** The canvas, a context to draw on it, and whether the processor draws. A second context costs more than a second canvas. */
+  /** Returns the canvas, a context to draw on it, and true without a graphics card. A context with smooth edges needs a new canvas. */
   function contextOf(canvas) {
     const plain = { alpha: false, antialias: false, stencil: false };
     const gl = canvas.getContext("webgl", plain);
@@ -48,7 +48,7 @@
       new ResizeObserver(() => app.redraw()).observe(canvas.parentElement);
     }
 
-    /** Builds what stands still, and as many AUVs and targets as there are. */
+    /** Builds all parts that do not move, and all AUVs and targets. */
     build() {
       const { recording: r, colours } = this.app;
       const dispose = (object) => object.traverse((o) => {
@@ -60,7 +60,7 @@
       }
       this.half = this.extent();
       this.renderer.setClearColor(colours.water);
-      this.scene.fog = new THREE.Fog(colours.water);  // the far bottom goes over into the water
+      this.scene.fog = new THREE.Fog(colours.water);  // the far bottom fades into the water
       if (r.meta.bottom) {
         const { group, depths } = STG.shapes.bottomOf(r.meta.bottom, colours.name);
         this.depths = depths;
@@ -77,7 +77,7 @@
       this.far = 40 * this.half;
     }
 
-    /** Half of the size of what is shown [m]. */
+    /** Returns half of the size of the shown region [m]. */
     extent() {
       const r = this.app.recording;
       if (r.meta.half_extent_m) return r.meta.half_extent_m;
@@ -111,7 +111,7 @@
       return { mesh };
     }
 
-    /** A place in a row; in the row that is shown, as far on the way to the next one as time is. */
+    /** Returns a position in a row. In the shown row, it is interpolated to the shown time. */
     point(row, name, i) {
       const { steps } = this.app.recording;
       return [0, 1, 2].map((a) => {
@@ -122,7 +122,7 @@
       });
     }
 
-    /** An angle, as point(). */
+    /** Returns an angle, like point(). */
     angle(row, name, i) {
       const { steps } = this.app.recording, x = steps.at(name, row, i) || 0;
       if (this.share === 0) return x;
@@ -130,7 +130,7 @@
       return x + this.share * Math.atan2(Math.sin(turn), Math.cos(turn));
     }
 
-    /** How far time is from a row to the next one of the same episode, 0 to 1. */
+    /** Returns the share of the time from a row to the next one of the same episode, 0 to 1. */
     shareOf(t, row) {
       const r = this.app.recording, [a, b] = [row, row + 1].map((at) => r.steps.at("t", at));
       return row + 1 < r.steps.count && t > a && r.episodeAt(a) === r.episodeAt(b) ? Math.min(1, (t - a) / (b - a)) : 0;
@@ -171,12 +171,12 @@
       this.renderer.render(this.scene, this.camera);
     }
 
-    /** First row of a trail that ends at `row`, and the rows between its points. */
+    /** Returns the first row of a track that ends at `row`, and the number of rows between its points. */
     trail(row) {
       const r = this.app.recording;
       const episode = r.episodeAt(r.steps.at("t", row));
       let first = episode ? Math.max(0, r.steps.find("t", episode.start - 1e-6) + 1) : 0;
-      // The whole way is seen from afar; from near it would hide what happens now.
+      // From far, the whole track is shown. From near, it would hide the present.
       if (this.mode !== "region") {
         const shown = Math.max(TRAIL_STEPS * (r.meta.decision_s || 0), TRAIL_SHARE * (r.end - r.start));
         first = Math.max(first, r.steps.find("t", r.steps.at("t", row) - shown));
@@ -213,13 +213,13 @@
       if (Number.isFinite(estimate[0])) this.drawBelief(one, row, i, estimate, rgb);
       const range = r.steps.at("range", row, i);
       if (range > 0) {
-        // Of many AUVs, the circles are a veil; that of the chosen one stands out.
+        // The circles of many AUVs are pale. The circle of the chosen AUV is stronger.
         this.lines.ink(colours.rgbOf.approach, selected === i ? 0.7 : Math.min(0.55, 2 / r.agents));
         this.lines.circle(...p, range);
       }
     }
 
-    /** The way of an AUV in the colours of its phases; what is old fades. */
+    /** Draws the track of an AUV in the colours of its phases. Old parts are paler. */
     drawTrack(row, i) {
       const { recording: r, colours, selected } = this.app, { lines } = this;
       const [first, stride] = this.trail(row), phases = r.steps.column("phase"), chosen = selected === i, opacity = selected >= 0 && !chosen ? 0.25 : 0.9;
@@ -229,7 +229,7 @@
       });
     }
 
-    /** Rows that may be left out between two points of a way, so that these are a few pixels apart: a power of two. */
+    /** Returns the number of rows between two points of a track, a power of two, so that points are some pixels apart. */
     sparse({ data, width }, i, first, row, place) {
       const hop = Math.max(1, Math.floor((row - first) / 8));
       let length = 0, rows = 0;
@@ -238,19 +238,19 @@
         if (d >= 0) { length += d; rows += hop; }
         to = from;
       }
-      const pixels = length / this.metresPerPixel(place) / rows;  // a row
+      const pixels = length / this.metresPerPixel(place) / rows;  // per row
       return pixels > 0 ? Math.pow(2, Math.min(8, Math.max(0, Math.floor(Math.log2(APART / pixels))))) : 1;
     }
 
-    /** Puts the way of a point through the rows first to row; ink(row) chooses the colour. */
+    /** Draws the track of a point from row `first` to `row`; ink(row) chooses the colour. */
     way(name, i, first, row, most, place, ink) {
       const column = this.app.recording.steps.column(name), { data, width } = column;
       const stride = Math.max(most, this.sparse(column, i, first, row, place));
       let from = first * width + 3 * i;
       for (let at = first; at < row;) {
-        at = Math.min(row, stride * (Math.floor(at / stride) + 1));  // the same rows in the next drawing
+        at = Math.min(row, stride * (Math.floor(at / stride) + 1));  // so that the next drawing uses the same rows
         const to = at * width + 3 * i;
-        if (data[from] === data[from] && data[to] === data[to]) {  // NaN: it was not there
+        if (data[from] === data[from] && data[to] === data[to]) {  // NaN: the point was not there
           ink(at);
           this.lines.segment(data[from], data[from + 1], data[from + 2], data[to], data[to + 1], data[to + 2]);
         }
@@ -260,7 +260,7 @@
       if (this.share > 0 && Number.isFinite(p[0] + data[from])) this.lines.segment(data[from], data[from + 1], data[from + 2], ...p);
     }
 
-    /** Where the AUV believes the target to be, and the ellipse of one deviation seen from above. */
+    /** Draws an AUV's estimate of the target, and the ellipse of one standard deviation, as seen from above. */
     drawBelief(one, row, i, p, rgb) {
       const { recording: r, selected } = this.app;
       if (selected >= 0 && selected !== i) return;

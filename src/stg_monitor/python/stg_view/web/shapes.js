@@ -1,32 +1,32 @@
-/* What the scene is made of: hulls, the bottom of the sea coloured by its depth,
- * obstacles, and the frame of the region. World axes are ENU, z up, metres. */
+/* The shapes of the scene: hulls, the bottom of the sea with colours for its depth, obstacles, and the frame of the
+ * region. World axes are ENU, z up, metres. */
 (function (STG) {
   "use strict";
 
-  // From the deepest to the shallowest; pale on a light page, so that dark lines stand out.
+  // From the deepest to the shallowest. The colours of the light theme are pale, so that dark lines are visible.
   const DEPTHS = {
     dark: [[0.06, 0.1, 0.32], [0.1, 0.27, 0.55], [0.15, 0.5, 0.66], [0.38, 0.72, 0.64], [0.82, 0.85, 0.6]],
     light: [[0.4, 0.57, 0.76], [0.5, 0.69, 0.84], [0.62, 0.8, 0.87], [0.76, 0.89, 0.86], [0.94, 0.93, 0.8]],
   };
   const LAND = [0.45, 0.36, 0.22];
   const OBSTACLE = "#a9744f";
-  // Of the sky and the ground, and of a sun in that direction.
+  // Light of the sky, of the ground and of a sun, and the direction of the sun.
   const LIGHT = { ground: 0x405060, diffuse: 0.8, sun: [-1, -2, 4], direct: 0.55 };
 
-  /** Colour of a depth in a theme, as a share from the deepest (0) to the shallowest (1). */
+  /** Returns the colour of a depth in a theme. The depth is a share from the deepest (0) to the shallowest (1). */
   STG.depthColour = (share, theme) => {
     const ramp = DEPTHS[theme], x = Math.min(Math.max(share, 0), 1) * (ramp.length - 1), k = Math.min(Math.floor(x), ramp.length - 2);
     return ramp[k].map((c, a) => c + (x - k) * (ramp[k + 1][a] - c));
   };
 
-  /** A line through points that stand still, [x, y, z, x, ...]. */
+  /** Returns a line through points that do not move, [x, y, z, x, ...]. */
   function lineOf(points, colour, opacity) {
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(points), 3));
     return new THREE.Line(geometry, new THREE.LineBasicMaterial({ color: colour, transparent: true, opacity, depthWrite: false }));
   }
 
-  /** One geometry of several that have positions, normals and an index. */
+  /** Merges several geometries with positions, normals and an index into one. */
   function merged(parts) {
     const all = new THREE.BufferGeometry(), index = [];
     let first = 0;
@@ -43,7 +43,7 @@
     return all;
   }
 
-  /** A slim body with fins, bow along +x, one unit long. */
+  /** Returns a slim body with fins, bow along +x, one unit long. */
   function hullGeometry() {
     const profile = [[0, -0.5], [0.045, -0.47], [0.085, -0.36], [0.1, -0.2], [0.1, 0.22], [0.09, 0.34], [0.06, 0.45], [0, 0.5]];
     const body = new THREE.LatheBufferGeometry(profile.map(([r, y]) => new THREE.Vector2(r, y)), 10).rotateZ(-Math.PI / 2);
@@ -51,7 +51,7 @@
     return merged([body, ...fins]);
   }
 
-  /** Puts the light that falls on each corner into its colour: what stands still need not be lit for each drawing. */
+  /** Adds the light to the colour of each corner, so that drawings need not compute light for parts that do not move. */
   function lightUp(tint, normal) {
     const sun = new THREE.Vector3(...LIGHT.sun).normalize(), ground = new THREE.Color(LIGHT.ground).toArray();
     for (let k = 0; k < normal.count; ++k) {
@@ -71,7 +71,7 @@
     const position = geometry.attributes.position, tint = new Float32Array(3 * n * n);
     for (let j = 0; j < n; ++j) {
       for (let i = 0; i < n; ++i) {
-        const k = j * n + i, z = heights[(n - 1 - j) * n + i];  // the plane begins in the north
+        const k = j * n + i, z = heights[(n - 1 - j) * n + i];  // the first row of the plane is in the north
         position.setZ(k, z);
         const share = high - low < 1 ? 0.35 : (z - low) / (high - low);
         tint.set(z > 0 ? LAND : STG.depthColour(share, theme), 3 * k);
@@ -107,7 +107,7 @@
     return mesh;
   }
 
-  /** The edge of the region: a square on the surface of open water, else a box. */
+  /** Returns the edge of the region: a square on the surface of open water, otherwise a box. */
   function frameOf(half, open, colour) {
     if (open) {
       return lineOf([-half, -half, 0, half, -half, 0, half, half, 0, -half, half, 0, -half, -half, 0], colour, 0.5);

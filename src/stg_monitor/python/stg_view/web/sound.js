@@ -1,10 +1,10 @@
-/* Packets in the scene: a growing circle of sound around each sender, and a line to each receiver: whole
- * where the packet is heard, broken with its reason where it is lost. Fast sound is slowed down to be
- * seen. */
+/* Packets in the scene: a growing circle of sound around each sender, and a line to each receiver. The line is solid
+ * if the packet is heard. If it is lost, the line is dashed and has a label with the reason. Fast sound is slowed
+ * down to be visible. */
 (function (STG) {
   "use strict";
 
-  const RINGS = 40, LABELS = 10, SEEN_S = 0.45;  // of wall time that a packet is seen at least
+  const RINGS = 40, LABELS = 10, SEEN_S = 0.45;  // a packet is visible for at least this wall time
 
   class Sound {
     constructor(app, lines) {
@@ -16,7 +16,7 @@
     draw(t, row) {
       const { recording: r, transmissions, speed, playing, scene, selected, colours } = this.app, { lines } = this;
       const labels = [];
-      // Fast runs show a packet for longer than it takes, but not several rounds of them at once.
+      // A fast run shows a packet for longer than it really takes, but not so long that several rounds are visible at once.
       const every = (r.end - r.start) / Math.max(1, transmissions.list.length);
       const least = Math.max(r.meta.decision_s || 0.1, Math.min(playing ? SEEN_S * speed : 0, 1.5 * every));
       const from = t - Math.max(transmissions.longest || 0, least);
@@ -54,7 +54,7 @@
       this.labels = labels.filter((_, k) => k % stride === 0);
     }
 
-    /** Which node has heard which a short while ago. */
+    /** Draws the links over which a packet has arrived a short time ago. */
     drawRecentLinks(t, row) {
       const { recording: r, transmissions, scene, colours } = this.app;
       const window = Math.max(2, 20 * (r.meta.decision_s || 0.1)), seen = new Set();

@@ -1,13 +1,13 @@
-/* What happened, in words: transmissions put together from their rows, and the events of a run with the
- * reason of each. Read from a recording; draws nothing. */
+/* The events of a run, with reasons, as texts, and the transmissions, each with the rows of its packet. This file only
+ * reads a recording and draws nothing. */
 (function (STG) {
   "use strict";
 
-  const LOST = 3, OPEN = 20000;  // transmissions that more rows may still belong to
-  const BEFORE_LOSS_S = 5;  // in which missing packets are listed, at least; or so many decisions:
+  const LOST = 3, OPEN = 20000;  // OPEN: number of transmissions that may still get rows
+  const BEFORE_LOSS_S = 5;  // missing packets of this time before a loss are listed, or of this number of decisions:
   const BEFORE_LOSS_STEPS = 50;
 
-  /** The packets of a recording, by transmission, in the order in which they left. */
+  /** The transmissions of a recording, in the order of their starts. */
   class Transmissions {
     constructor(recording) {
       this.recording = recording;
@@ -20,7 +20,7 @@
       this.rows = this.longest = 0;
     }
 
-    /** Takes what came since the last call. */
+    /** Adds the rows that came since the last call. */
     update() {
       const packets = this.recording.packets;
       if (packets.count === this.rows) return;
@@ -31,7 +31,7 @@
       for (let row = this.rows; row < packets.count; ++row) {
         const left = Number.isFinite(transmit[row]);
         const begin = left ? transmit[row] : at("offered", row);
-        // Most rows tell of the same packet as the row before.
+        // Most rows are for the same packet as the row before.
         if (one && one.source === sources[row] && one.sequence === numbers[row] && one.begin === begin && one.left === left) {
           this.takeRow(one, row, fates[row], arrivals[row]);
           continue;
@@ -45,7 +45,7 @@
             bytes: at("bytes", row),
           };
           this.byKey.set(key, one);
-          // The fates of a packet come one after the other, so that old ones need not be found again.
+          // All rows of a packet come within a short time, so old transmissions need not be found again.
           if (this.byKey.size > OPEN) this.byKey.delete(this.byKey.keys().next().value);
           sorted = sorted && (this.list.length === 0 || this.list[this.list.length - 1].begin <= begin);
           this.list.push(one);
@@ -56,16 +56,16 @@
       this.rows = packets.count;
     }
 
-    /** Puts what became of a packet at one receiver to its transmission. */
+    /** Adds the fate of a packet at one receiver to its transmission. */
     takeRow(one, row, fate, arrival) {
       one.rows.push(row);
       if (fate === 0) ++one.heard;
       if (arrival > one.last) one.last = arrival;
-      // How long sound is under way at most: where a window has to begin to look.
+      // The longest travel time of sound. A search in a time window begins earlier by this time.
       if (one.last - one.begin > this.longest) this.longest = one.last - one.begin;
     }
 
-    /** Index of the first transmission that begins at t or later. */
+    /** Returns the index of the first transmission that begins at t or later. */
     first(t) {
       let low = 0, high = this.list.length;
       while (low < high) {
@@ -74,11 +74,11 @@
       }
       return low;
     }
-    /** Those that begin in [from, to). */
+    /** Returns the transmissions that begin in [from, to). */
     between(from, to) { return this.list.slice(this.first(from), this.first(to)); }
   }
 
-  /** Text of a time or a length with as many digits as it needs. */
+  /** Returns a number as text, with about three digits, and its unit. */
   STG.number = (x, unit = "") => {
     if (!Number.isFinite(x)) return "–";
     const size = Math.abs(x);
@@ -181,7 +181,7 @@
       }
     }
 
-    /** A node without a place in the water has left, or has not joined yet. */
+    /** Adds events for nodes that join or leave. A node without a position has left, or has not joined yet. */
     readPresence(row, t, i) {
       const r = this.recording, there = Number.isFinite(r.steps.at("position", row, 3 * i));
       if (this.there[i] !== undefined && this.there[i] !== there) {
@@ -224,7 +224,7 @@
       }
     }
 
-    /** Why an AUV lost the target: lines of text, and the packets to it that were missing. */
+    /** Returns the reasons why an AUV lost the target: lines of text, and the missing packets to the AUV. */
     explain(event) {
       const r = this.recording, row = r.row(event.t), i = event.auv, lines = [];
       if (i < 0 || row < 0) return { lines, missing: [] };
@@ -246,7 +246,7 @@
           (Number.isFinite(std) ? `, stated deviation ${STG.number(std, "m")}` : "") +
           (Number.isFinite(nees) ? ` (NEES ${STG.number(nees)}, consistent: 3).` : "."));
       }
-      if (Number.isFinite(age)) lines.push(`The newest observation in it is ${STG.number(age, "s")} old.`);
+      if (Number.isFinite(age)) lines.push(`The newest observation in the estimate is ${STG.number(age, "s")} old.`);
       const heard = this.missingBefore(event.t, i);
       if (heard.sent > 0) {
         const reasons = heard.reasons.map(([fate, count]) => `${count} ${STG.FATES[fate]}`).join(", ");

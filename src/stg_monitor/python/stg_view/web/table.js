@@ -1,4 +1,4 @@
-/* The events with their reasons, the table of the AUVs, and the metrics of finished episodes. */
+/* The list of events with their reasons, the table of the AUVs, and the metrics of finished episodes. */
 (function (STG) {
   "use strict";
 
@@ -13,7 +13,7 @@
   };
   STG.KINDS = KINDS;
 
-  /** The list of events; the one that is shown tells why. */
+  /** The list of events. An open event shows its reasons. */
   class Events {
     constructor(app, root) {
       this.app = app;
@@ -96,7 +96,7 @@
     }
   }
 
-  /** What every AUV does now, and how the episodes went. */
+  /** The state of every AUV at the shown time, and the metrics of the episodes. */
   class Live {
     constructor(app, root) {
       this.app = app;
@@ -135,7 +135,7 @@
       if (this.summaries !== r.summaries) this.drawMetrics();
     }
 
-    /** Packets that each AUV has heard and missed since the start of the episode. */
+    /** Returns the numbers of packets that each AUV has heard and missed since the start of the episode. */
     counts(t) {
       const { recording: r, transmissions } = this.app, heard = [], missed = [];
       const episode = r.episodeAt(t);
