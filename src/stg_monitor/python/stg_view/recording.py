@@ -176,7 +176,7 @@ class Packets:
             rows = kept
             sent = sum(1 for key in order if key[1] >= 0)
             totals = encode("totals", fates=self.fates, links=self.links, transmissions=sent)
-            totals += encode("note", text=f"One transmission in {keep_every} is drawn; counts are of all.")
+            totals += encode("note", text=f"One transmission in {keep_every} is drawn; counts include all transmissions.")
         if not rows:
             return totals
         columns = list(zip(*rows))
