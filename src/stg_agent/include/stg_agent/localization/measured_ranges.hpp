@@ -39,7 +39,7 @@ class MeasuredRanges {
   }
 
  private:
-  /// A range that is older than this is not told.
+  /// A packet contains no range that is older than this.
   static constexpr TimeNs kOldest = 30'000'000'000;
 
   bool Usable(int id, const NeighbourState& packet) const {
