@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -75,6 +76,16 @@ struct NoWorld : acoustics::DriverWorld {
   void OnReception(const acoustics::DriverReception& reception) override {
     heard = true;
     Require(reception.payload.size() <= 2048, "a payload that no modem sends");
+    for (double number : {reception.airtime_s, reception.received_level_db,
+                          reception.noise_level_db, reception.sinr_db, reception.doppler_mps}) {
+      Require(std::isfinite(number), "a reception with a number that is not finite");
+    }
+  }
+  void OnSendEnd(std::uint32_t /*tag*/, double airtime_s) override {
+    Require(std::isfinite(airtime_s), "an airtime that is not finite");
+  }
+  void OnRange(int /*address*/, double one_way_s) override {
+    Require(std::isfinite(one_way_s), "a range that is not finite");
   }
   std::size_t said = 0;
   bool heard = false;

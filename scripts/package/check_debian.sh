@@ -57,6 +57,14 @@ files() {
 }
 
 trap 'rm -rf --one-file-system "$work"' EXIT
+needed=(lintian)
+[[ -n "${STG_BASE:-}" ]] || needed+=(mmdebstrap)
+for tool in "${needed[@]}"; do
+  if ! command -v "$tool" >/dev/null; then
+    echo "check_debian: there is no $tool here; apt-get install $tool" >&2
+    exit 1
+  fi
+done
 if ! lintian --fail-on error --tag-display-limit 0 "$index"/*.changes >"$work/lintian" 2>&1; then
   grep '^E:' "$work/lintian" >&2
   say "lintian found errors"

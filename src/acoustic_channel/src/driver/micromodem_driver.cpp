@@ -1,11 +1,13 @@
 #include "acoustic_channel/driver/micromodem_driver.hpp"
 
-#include <cstdlib>
-
 namespace stg::acoustics::micromodem {
 namespace {
 
-double RealOf(const std::string& text) { return std::strtod(text.c_str(), nullptr); }
+constexpr double kLongest_s = 1000.0;  ///< of a travel time
+constexpr double kMost = 1000.0;       ///< of a level [dB] or a velocity [m/s]
+
+/// A statistic of a reception; 0, which means not stated, if it is no plausible number.
+double StatisticOf(const std::string& text) { return RealIn(text, -kMost, kMost).value_or(0.0); }
 int AddressIn(const std::string& text) { return NumberIn(text, 0, 127).value_or(-1); }
 
 std::string Line(const std::string& body) {
@@ -72,7 +74,7 @@ void MicromodemDriver::Take(const Fields& f, TimeNs t) {
   } else if (name == "CAMSG") {
     ++counts_.lost;
   } else if (name == "CAMPR" && f.size() > 3 && AddressIn(f[1]) == ping_) {
-    EndPing(RealOf(f[3]), t);
+    EndPing(RealIn(f[3], 0.0, kLongest_s).value_or(-1.0), t);
   } else if (name == "CAREV" && f.size() > 3) {
     firmware_ = f[3];
   }
@@ -120,10 +122,10 @@ void MicromodemDriver::TakeStatistics(const Fields& f) {
   const std::size_t newer = f.size() > 1 && f[1] == "6" ? 1 : 0;
   for (DriverReception& r : received_) {
     if (f.size() >= 30 + newer) {
-      r.received_level_db = RealOf(f[7 + newer]);
-      r.sinr_db = RealOf(f[21 + newer]);
-      r.doppler_mps = RealOf(f[26 + newer]);
-      r.noise_level_db = RealOf(f[27 + newer]);
+      r.received_level_db = StatisticOf(f[7 + newer]);
+      r.sinr_db = StatisticOf(f[21 + newer]);
+      r.doppler_mps = StatisticOf(f[26 + newer]);
+      r.noise_level_db = StatisticOf(f[27 + newer]);
     }
     Receive(r);
   }

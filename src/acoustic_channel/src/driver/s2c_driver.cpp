@@ -1,6 +1,6 @@
 #include "acoustic_channel/driver/s2c_driver.hpp"
 
-#include <cstdlib>
+#include "acoustic_channel/engine/text.hpp"
 
 namespace stg::acoustics::s2c {
 namespace {
@@ -8,8 +8,16 @@ namespace {
 /// Payload of a ping; no host reads it.
 constexpr char kPingPayload[] = "?";
 
-double NumberOf(const std::string& text) { return std::strtod(text.c_str(), nullptr); }
-int WholeOf(const std::string& text) { return static_cast<int>(NumberOf(text)); }
+constexpr int kLastAddress = 65535;
+constexpr double kLongest_us = 1e9;  ///< of an airtime or a travel time
+constexpr double kMost = 1000.0;     ///< of a level [dB] or a velocity [m/s]
+
+/// A time in an answer of the modem [s].
+std::optional<double> TimeOf(const std::string& microseconds) {
+  const std::optional<double> us = RealIn(microseconds, 0.0, kLongest_us);
+  if (!us) return {};
+  return 1e-6 * *us;
+}
 
 bool Begins(const std::string& text, const char* with) { return text.rfind(with, 0) == 0; }
 
@@ -54,7 +62,7 @@ void S2cDriver::TakeAnswer(const ModemLine& line, TimeNs t) {
       Taken(t);
     }
   } else if (asked() == "AT?T") {
-    EndPing(1e-6 * NumberOf(text), t);
+    EndPing(TimeOf(text).value_or(-1.0), t);
   } else if (asked() == "ATI0") {
     firmware_ = text;
   }
@@ -67,7 +75,7 @@ void S2cDriver::TakeNotification(const ModemLine& line, TimeNs t) {
   if (name == "SENDSTART" && own) {
     Leaving(t);
   } else if (name == "SENDEND" && own && line.fields.size() > 4) {
-    Left(1e-6 * NumberOf(line.fields[4]), t);
+    Left(TimeOf(line.fields[4]).value_or(0.0), t);
   } else if (name == "RECVIM" && line.fields.size() == 9) {
     TakeMessage(line, t);
   } else if (name == "RECVFAILED") {
@@ -83,15 +91,22 @@ void S2cDriver::TakeMessage(const ModemLine& line, TimeNs t) {
   const std::vector<std::string>& f = line.fields;
   const bool ping = f[4] == "ack" && line.payload == kPingPayload;
   if (ping) return;
+  const auto source = NumberIn(f[2], 0, kLastAddress);
+  const auto destination = NumberIn(f[3], 0, kLastAddress);
+  const auto airtime_s = TimeOf(f[5]);
+  const auto rssi_db = RealIn(f[6], -kMost, kMost), velocity_mps = RealIn(f[8], -kMost, kMost);
+  if (!source || !destination || !airtime_s || !rssi_db || !velocity_mps) {
+    ++counts_.lost;  // the line was damaged on its way through the port
+    return;
+  }
   DriverReception r;
-  r.source = WholeOf(f[2]);
-  const int destination = WholeOf(f[3]);
-  r.destination = destination == options_.broadcast ? kToAll : destination;
+  r.source = *source;
+  r.destination = *destination == options_.broadcast ? kToAll : *destination;
   r.payload = line.payload;
   r.arrival = t;
-  r.airtime_s = 1e-6 * NumberOf(f[5]);
-  r.received_level_db = NumberOf(f[6]) - options_.rssi_offset_db;
-  r.doppler_mps = NumberOf(f[8]);
+  r.airtime_s = *airtime_s;
+  r.received_level_db = *rssi_db - options_.rssi_offset_db;
+  r.doppler_mps = *velocity_mps;
   Receive(r);
 }
 

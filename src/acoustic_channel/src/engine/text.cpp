@@ -63,4 +63,15 @@ std::optional<int> NumberIn(const std::string& text, int lowest, int highest) {
   return value;
 }
 
+std::optional<double> RealIn(const std::string& text, double lowest, double highest) {
+  const char* begin = text.data();
+  const char* end = begin + text.size();
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') ++begin;
+  double value = 0.0;
+  const auto read = std::from_chars(begin, end, value);
+  const bool whole = read.ec == std::errc() && read.ptr == end;
+  if (!whole || !(value >= lowest && value <= highest)) return {};
+  return value;
+}
+
 }  // namespace stg::acoustics

@@ -174,6 +174,42 @@ TEST_P(Drivers, ASilentModemIsAskedThreeTimesAndThenHungUp) {
 INSTANTIATE_TEST_SUITE_P(Protocols, Drivers, testing::Values("s2c", "micromodem"),
                          [](const auto& info) { return std::string(info.param); });
 
+/// What the driver makes of one notification of its modem.
+Wire AfterLine(const std::string& content) {
+  Wire wire;
+  s2c::S2cDriver driver({}, &wire);
+  const std::string line = content + "\r\n";
+  driver.Read(Ns(1.0), {reinterpret_cast<const std::uint8_t*>(line.data()), line.size()});
+  EXPECT_EQ(driver.counts().lost, wire.received.empty() ? 1u : 0u);
+  return wire;
+}
+
+// A serial line may damage a digit. Such a number must not get into a message of ROS.
+TEST(S2cDriver, AReceptionWithADamagedNumberCountsAsLost) {
+  const Wire good = AfterLine("RECVIM,5,1,2,noack,206500,-58,457,-0.25,hello");
+  ASSERT_EQ(good.received.size(), 1u);
+  EXPECT_EQ(good.received[0].source, 1);
+  EXPECT_DOUBLE_EQ(good.received[0].airtime_s, 0.2065);
+  EXPECT_DOUBLE_EQ(good.received[0].doppler_mps, -0.25);
+  for (const char* damaged :
+       {"RECVIM,5,231114221331.0,2,noack,206500,-58,457,0.0,hello",
+        "RECVIM,5,1,x,noack,206500,-58,457,0.0,hello", "RECVIM,5,1,2,noack,nan,-58,457,0.0,hello",
+        "RECVIM,5,1,2,noack,206500,inf,457,0.0,hello",
+        "RECVIM,5,1,2,noack,206500,-58,457,1e999,hello"}) {
+    EXPECT_TRUE(AfterLine(damaged).received.empty()) << damaged;
+  }
+}
+
+TEST(Text, ARealNumberIsTheWholeTextAndInTheRange) {
+  EXPECT_EQ(RealIn("-0.5", -1.0, 1.0), -0.5);
+  EXPECT_EQ(RealIn("+0.5", -1.0, 1.0), 0.5);
+  EXPECT_EQ(RealIn("1e-1", -1.0, 1.0), 0.1);
+  for (const char* text :
+       {"", "+", "+-1", "nan", "inf", "-inf", "1e999", "0.5 ", " 0.5", "0.5x", "2"}) {
+    EXPECT_EQ(RealIn(text, -1.0, 1.0), std::nullopt) << text;
+  }
+}
+
 TEST(S2cDriver, WhatIsTooLongIsRefused) {
   Pair pair("s2c");
   pair.Send(0, 9, kToAll, std::string(65, 'x'));

@@ -14,5 +14,8 @@ std::optional<std::string> FromHex(const std::string& digits);
 std::string ToBase64(const std::string& bytes);
 /// A whole number in the range; `text` must contain nothing else.
 std::optional<int> NumberIn(const std::string& text, int lowest, int highest);
+/// A decimal number in the range, with or without a sign; `text` must contain nothing else. `nan`
+/// and `inf` are no numbers.
+std::optional<double> RealIn(const std::string& text, double lowest, double highest);
 
 }  // namespace stg::acoustics
