@@ -89,6 +89,14 @@ class Tune(unittest.TestCase):
         flown = list((self.folder / "out" / "work" / "flights").glob("*.csv"))
         self.assertEqual(len(flown), 1)
 
+    def test_kept_results_without_a_scored_metric_are_flown_again(self):
+        self.assertEqual(self.run_tune(trials=5, score={"return": 1.0}).returncode, 0)
+        shutil.rmtree(self.folder / "out" / "work")
+        run = self.run_tune(trials=5)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        flown = list((self.folder / "out" / "work" / "flights").glob("*.csv"))
+        self.assertEqual(len(flown), 5)
+
     def test_the_best_fly_again_on_other_episodes(self):
         # From the second seed on, the return of every episode has another peak: gain 4.
         other = EVALUATE.replace("gain / 2", "gain / (2 if given['--seed'] == '7' else 4)")

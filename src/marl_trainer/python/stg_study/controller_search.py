@@ -166,29 +166,35 @@ def _jobs(search, policy, work, bin_dir):
     return jobs
 
 
-def _results(jobs, parallel, finished):
-    """The metrics of each job as evaluate reports them. Flies what is neither flown nor kept."""
-    waiting = [job for job in jobs if finished.find(job.words()) is None and not job.complete()]
+def _results(search, jobs, parallel, finished):
+    """The scored metrics of each job. Flies what is neither flown nor kept."""
+
+    def kept(job):
+        numbers = finished.find(job.words())
+        return numbers if numbers is not None and set(search["score"]) <= set(numbers) else None
+
+    waiting = [job for job in jobs if kept(job) is None and not job.complete()]
     if waiting:
         runner = Runner([], waiting, parallel, io.StringIO())
         if not runner.run():
             raise Interrupted
         if runner.failed:
             raise StudyError(runner.failed[0])
-    return [finished.find(job.words()) or job.summary() for job in jobs]
+    found = [kept(job) or job.summary() for job in jobs]
+    unknown = [name for name in search["score"] if not all(is_number(cell.get(name)) for cell in found)]
+    if unknown:
+        raise StudyError(f"score: evaluate does not report {', '.join(unknown)}")
+    for job, cell in zip(jobs, found):
+        if kept(job) is None:
+            finished.add(job.words(), {name: cell[name] for name in search["score"]})
+    return found
 
 
 def _fly(search, values, places, parallel):
     """Returns (score, means of the scored metrics over all cells)."""
     work, bin_dir, finished = places
     jobs = _jobs(search, text_of(search["controller"], values), work, bin_dir)
-    found = _results(jobs, parallel, finished)
-    unknown = [name for name in search["score"] if not all(is_number(cell.get(name)) for cell in found)]
-    if unknown:
-        raise StudyError(f"score: evaluate does not report {', '.join(unknown)}")
-    for job, cell in zip(jobs, found):
-        if finished.find(job.words()) is None:
-            finished.add(job.words(), {name: cell[name] for name in search["score"]})
+    found = _results(search, jobs, parallel, finished)
     means = {name: sum(cell[name] for cell in found) / len(found) for name in search["score"]}
     return sum(weight * means[name] for name, weight in search["score"].items()), means
 
