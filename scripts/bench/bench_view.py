@@ -5,11 +5,12 @@ Parts: page (a report: size, seconds to open, frames a second while it plays, me
 at 10 Hz: lag and frames a second), lockstep (what a run in lockstep loses to the view). The last two
 need a sourced workspace. Figures depend on what else the machine does: `load` is given
 with them, and the work (seconds of processor time of all processes of the browser), which depends less on it.
-In lockstep, the view starts and ends many times during one run, because two runs differ by more than it costs.
+In lockstep, the view begins and stops to listen many times during one run, because two runs differ by more than it costs.
 """
 
 import argparse
 import contextlib
+import importlib.machinery
 import json
 import os
 import pathlib
@@ -26,6 +27,8 @@ from stg_view.browser import show, started
 
 MASTER_PORT = 11818
 PORT, AGENTS, RATE_HZ = 8318, 20, 10.0
+VIEW = ROOT / "src/stg_monitor/scripts/view_server.py"
+CHANGED_S = 0.7  # after the server or the browser begins or stops to listen, before a window begins
 SETTLED_S = 3.0  # a browser still works for this time after its start; it does not count as opening a page
 FRAMES = """const done = arguments[1], seconds = arguments[0], times = [];
 const next = (now) => { times.push(now);
@@ -106,7 +109,7 @@ def wait_for(port):
 
 def measure_live(seconds):
     """Lag and frames of a live page."""
-    server = [sys.executable, ROOT / "src/stg_monitor/scripts/view_server.py", f"_port:={PORT}", f"_rate_hz:={RATE_HZ}"]
+    server = [sys.executable, VIEW, f"_port:={PORT}", f"_rate_hz:={RATE_HZ}"]
     own = {**os.environ, "ROS_MASTER_URI": f"http://127.0.0.1:{MASTER_PORT}"}
     ends = []
     try:
@@ -129,39 +132,62 @@ def measure_live(seconds):
     return {"agents": AGENTS, "frames_per_s": frames, "lag_s": statistics.median(lags), "lag_s_95": lags[int(0.95 * len(lags))]}
 
 
-def look(stop):
-    """Reads the stream of a live page, like a browser on another machine, until `stop` is set."""
+def look(stop, start):
+    """Reads the stream of a live page while `start` is set, like a browser on another machine, until `stop` is set.
+
+    It takes the processor only when the run leaves it idle, because that browser would not take it at all.
+    """
     import asyncio
 
     import aiohttp
 
+    os.nice(19)
+
     async def read():
         async with aiohttp.ClientSession() as session:
             while not stop.is_set():
-                try:
-                    async with session.ws_connect(f"http://127.0.0.1:{PORT}/stream", max_msg_size=0) as stream:
-                        while not stop.is_set():
-                            await asyncio.wait_for(stream.receive_bytes(), 1.0)
-                except (OSError, TypeError, aiohttp.ClientError, asyncio.TimeoutError):
-                    await asyncio.sleep(0.1)  # the server is not there yet, or not any more
+                await asyncio.sleep(0.1)
+                with contextlib.suppress(OSError, TypeError, aiohttp.ClientError, asyncio.TimeoutError):
+                    while start.is_set() and not stop.is_set():
+                        async with session.ws_connect(f"http://127.0.0.1:{PORT}/stream", max_msg_size=0) as stream:
+                            while start.is_set() and not stop.is_set():
+                                await asyncio.wait_for(stream.receive_bytes(), 1.0)
 
     asyncio.run(read())
 
 
-def episodes_of(times, begin, end):
-    """Episodes a second between two times, from the times at which episodes ended [s]."""
-    inside = [t for t in times if begin <= t <= end]
-    return (len(inside) - 1) / (inside[-1] - inside[0]) if len(inside) > 1 else 0.0
+def serve():
+    """Runs the server of the view. Each line of the standard input lets it begin or stop to listen to the run."""
+    view = importlib.machinery.SourceFileLoader("view_server", str(VIEW)).load_module()
+    import rospy
+    from stg_view.listening import UNSEEN_SHARE, Kept
+
+    os.nice(view.NICE)
+    rospy.init_node("view_server", disable_signals=True, disable_rostime=True)
+    server = view.Server(PORT, RATE_HZ, UNSEEN_SHARE)
+    listener = server.listener
+    listener.unsubscribe()
+    for line in sys.stdin:
+        if line.strip() == "on":
+            listener.kept = Kept()  # as in a new run, a browser gets little at once
+            listener.subscribe()
+        else:
+            listener.unsubscribe()
 
 
 class Run:
-    """A run in lockstep without an end, and the times at which its episodes end."""
+    """A run in lockstep without an end, its server of the view, a reader, and the times of its steps."""
 
     def __init__(self):
+        import multiprocessing
+
         self.environment = {**os.environ, "ROS_MASTER_URI": f"http://127.0.0.1:{MASTER_PORT}"}
         os.environ["ROS_MASTER_URI"] = self.environment["ROS_MASTER_URI"]
+        self.stop, self.start = multiprocessing.Event(), multiprocessing.Event()
+        self.eye = multiprocessing.Process(target=look, args=(self.stop, self.start), daemon=True)
+        self.eye.start()
         launch = [sys.executable, ROOT / "scripts/run/launch.py", "stg_bringup", "medium.launch"]
-        command = [*launch, "episodes:=1000000", "real_time_factor:=0", "table:=false", "gui:=false"]
+        command = [*launch, "episodes:=1000000", "real_time_factor:=0", "table:=false", "gui:=false", f"display_rate:={RATE_HZ}"]
         self.launch = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.STDOUT, env=self.environment)
         wait_for(MASTER_PORT)
         import auv_msgs.msg
@@ -169,60 +195,57 @@ class Run:
 
         # A node in Python that reads every message of /clock would take processor time from the run.
         rospy.init_node("bench_view", disable_signals=True, disable_rostime=True)
-        self.times = []
-        rospy.Subscriber("/episode_summary", auv_msgs.msg.EpisodeSummary, lambda _: self.times.append(time.monotonic()))
+        self.times = []  # wall and simulated times [s], some of each second
+        rospy.Subscriber("/acoustic_channel/links", auv_msgs.msg.LinkStates, self.hear)
+        command = [sys.executable, __file__, "--serve"]
+        self.server = subprocess.Popen(command, stdin=subprocess.PIPE, text=True, env=self.environment)
+        wait_for(PORT)
+        while not self.times:
+            time.sleep(0.1)
+
+    def hear(self, message):
+        """Notes how far the run is."""
+        self.times.append((time.monotonic(), message.header.stamp.to_sec()))
 
     def rate(self, kind, seconds):
-        """Episodes a second during a window: plain, viewed (with the server), watched (with a browser, too)."""
-        import multiprocessing
-
-        stop, server, eye = multiprocessing.Event(), None, None
-        if kind != "plain":
-            server = subprocess.Popen(
-                [sys.executable, ROOT / "src/stg_monitor/scripts/view_server.py", f"_port:={PORT}", "__name:=view_server"],
-                stdout=subprocess.DEVNULL, env=self.environment,
-            )  # fmt: skip
-            wait_for(PORT)
-        if kind == "watched":
-            eye = multiprocessing.Process(target=look, args=(stop,), daemon=True)
-            eye.start()
-        time.sleep(SETTLED_S)
+        """Simulated seconds a second during a window: plain, viewed (with the server), watched (with a browser, too)."""
+        print("off" if kind == "plain" else "on", file=self.server.stdin, flush=True)
+        (self.start.set if kind == "watched" else self.start.clear)()
+        time.sleep(CHANGED_S)
         begin = time.monotonic()
         time.sleep(seconds)
-        rate = episodes_of(self.times, begin, time.monotonic())
-        stop.set()
-        if eye is not None:
-            eye.join()
-        if server is not None:
-            server.terminate()
-            server.wait()
-        return rate
+        inside = [t for t in self.times if t[0] >= begin]
+        print("off", file=self.server.stdin, flush=True)
+        return (inside[-1][1] - inside[0][1]) / (inside[-1][0] - inside[0][0])
 
     def end(self):
         """Ends the run."""
+        self.stop.set()
+        self.server.stdin.close()
+        self.server.wait()
         self.launch.terminate()
         self.launch.wait()
 
 
 def measure_lockstep(rounds, seconds):
-    """The view comes and goes during one run: windows without it, with it, and with a browser, in turns."""
-    run, rates = Run(), {kind: [] for kind in ("plain", "viewed", "watched")}
+    """The view comes and goes during one run: a window with it, or with a browser, is between two windows without it."""
+    run, plain, losses = Run(), [], {"viewed": [], "watched": []}
     try:
-        while not run.times:
-            time.sleep(0.1)
-        for k in range(rounds):
-            for kind in (list(rates), list(rates)[::-1])[k % 2]:
-                rates[kind].append(run.rate(kind, seconds))
+        time.sleep(SETTLED_S)
+        plain.append(run.rate("plain", seconds))
+        for kind in list(losses) * rounds:
+            speed = run.rate(kind, seconds)
+            plain.append(run.rate("plain", seconds))
+            losses[kind].append(1 - speed / statistics.mean(plain[-2:]))
     finally:
         run.end()
 
     def slower(kind):
         """Median over the rounds, and its standard error by the median absolute deviation."""
-        losses = [1 - rate / plain for rate, plain in zip(rates[kind], rates["plain"])]
-        middle = statistics.median(losses)
-        return middle, 1.86 * statistics.median(abs(loss - middle) for loss in losses) / len(losses) ** 0.5
+        middle = statistics.median(losses[kind])
+        return middle, 1.86 * statistics.median(abs(loss - middle) for loss in losses[kind]) / len(losses[kind]) ** 0.5
 
-    return {"episodes_per_s": rates, "slower_with_view": slower("viewed"), "slower_when_watched": slower("watched")}
+    return {"plain": plain, "slower_with_view": slower("viewed"), "slower_when_watched": slower("watched")}
 
 
 def main():
@@ -231,11 +254,15 @@ def main():
     parser.add_argument("parts", nargs="*", help="page, live, lockstep (default: page)")
     parser.add_argument("--page", type=pathlib.Path, help="a report (default: one of field20 is flown and made)")
     parser.add_argument("--seconds", type=float, default=10.0, help="of each measurement (default: 10)")
-    parser.add_argument("--rounds", type=int, default=8, help="windows of each kind in lockstep (default: 8)")
+    parser.add_argument("--rounds", type=int, default=40, help="windows of each kind in lockstep (default: 40)")
     parser.add_argument("--publish", type=float, help=argparse.SUPPRESS)
+    parser.add_argument("--serve", action="store_true", help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.publish:
         publish(options.publish)
+        return
+    if options.serve:
+        serve()
         return
     found = {"load": os.getloadavg()[0], "cores": os.cpu_count()}
     for part in options.parts or ["page"]:

@@ -21,6 +21,8 @@ from stg_view.page import PageError, live_page
 from stg_view.recording import encode
 
 HOST = "127.0.0.1"
+# The nodes of a run in lockstep wait for each other. This node works while they leave a processor idle.
+NICE = 19
 # Only pages of this machine may connect. Another site in the same browser has another origin and host.
 OWN = re.compile(r"(127\.0\.0\.1|localhost|\[::1\])(:\d+)?$")
 
@@ -120,8 +122,6 @@ async def own_only(request, handler):
 
 def main():
     """Runs until ROS ends it."""
-    # The nodes of a run in lockstep wait for each other. This node works while they leave a processor idle.
-    os.nice(10)
     # It only uses the wall clock, because a run in lockstep sends /clock at every step.
     rospy.init_node("view_server", disable_signals=False, disable_rostime=True)
     port, rate_hz = rospy.get_param("~port", 8300), rospy.get_param("~rate_hz", 10.0)
@@ -130,6 +130,10 @@ def main():
     share = rospy.get_param("~unseen_share", UNSEEN_SHARE)
     if not (isinstance(share, (int, float)) and 0.001 <= share <= 1):
         raise PageError(f"unseen_share {share} is out of range: it is 0.001 to 1")
+    nice = rospy.get_param("~nice", NICE)
+    if not (isinstance(nice, int) and 0 <= nice <= 19):
+        raise PageError(f"nice {nice} is out of range: it is 0 to 19")
+    os.nice(nice)
     server = Server(port, float(rate_hz), float(share))
     if server.failure:
         raise PageError(f"port {port} of {HOST}: {server.failure.strerror}; choose another one with port:=")

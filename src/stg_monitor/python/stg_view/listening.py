@@ -23,7 +23,7 @@ MOST_KEPT = 24_000_000  # bytes of steps, and of packets, that a late browser ge
 MOST_DETECTIONS = 256  # waiting messages of detections
 AT_ONCE = 1 << 16  # bytes that are read from a connection at once; the kernel provides the memory anew for each larger read
 UNSEEN_S = 2.0  # packets of this time are collected while no browser is connected
-UNSEEN_SHARE = 0.02  # largest share of one processor for making steps while no browser is connected
+UNSEEN_SHARE = 0.002  # largest share of one processor for making steps while no browser is connected
 
 
 class Kept:
@@ -72,6 +72,11 @@ class Listener:
         self.known = {}
         self.detections = collections.deque(maxlen=MOST_DETECTIONS)
         self.packets, self.collecting, self.basket = [], False, threading.Lock()
+        self.subscribers = []
+        self.subscribe()
+
+    def subscribe(self):
+        """Begins to listen."""
         # A subscription with AnyMsg gets undecoded messages.
         options = {"buff_size": AT_ONCE, "tcp_nodelay": True}
         self.subscribers = [
@@ -81,6 +86,12 @@ class Listener:
             rospy.Subscriber("/episode_summary", auv_msgs.msg.EpisodeSummary, self.hear_summary, queue_size=200),
             rospy.Subscriber("/scenario", std_msgs.msg.String, self.hear_scenario, queue_size=200),
         ]
+
+    def unsubscribe(self):
+        """Stops listening; the run then makes nothing for the view."""
+        for subscriber in self.subscribers:
+            subscriber.unregister()
+        self.subscribers = []
 
     def tell(self, kind, data):
         """Stores a message and sends it to the browsers."""
@@ -176,7 +187,7 @@ class Listener:
             self.packets.append(raw._buff)
             first, self.collecting = not self.collecting, True
         if first:
-            self.later(0.5 * self.pause_s if self.has_browser() else UNSEEN_S, self.tell_collected)
+            self.later(self.pause_s if self.has_browser() else UNSEEN_S, self.tell_collected)
 
     def tell_collected(self):
         """Sends the packets since the last call."""
