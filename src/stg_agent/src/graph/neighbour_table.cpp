@@ -46,6 +46,7 @@ void NeighbourTable::Forget(TimeNs now) {
 }
 
 void NeighbourTable::MarkRead() {
+  if (!unread_) return;
   for (const int id : known_) slots_[static_cast<std::size_t>(id)].unread_target = false;
   unread_ = false;
 }
