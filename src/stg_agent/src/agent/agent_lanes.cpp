@@ -62,14 +62,15 @@ void LanedAgent<T>::Reset(int lane, std::uint32_t episode, const dynamics::Cue& 
 template <class T>
 void LanedAgent<T>::Detect(int lane, const dynamics::Detection& detection) {
   if (!present(lane)) return;
-  At(lane).Detect(detection);
-  EntityMemory& memory = memory_[static_cast<std::size_t>(lane)];
-  if (detection.target < 0 || detection.target >= model().target.count) return;
-  if (!search_.empty() && detection.target == inbox(lane).target()) {
-    search_[static_cast<std::size_t>(lane)].Detect(detection);
+  if (detection.target >= 0 && detection.target < model().target.count) {
+    if (!search_.empty() && detection.target == inbox(lane).target()) {
+      search_[static_cast<std::size_t>(lane)].Detect(detection);
+    }
+    TimeNs& newest = memory_[static_cast<std::size_t>(lane)]
+                         .own_detection[static_cast<std::size_t>(detection.target)];
+    newest = std::max(newest, detection.stamp);
   }
-  TimeNs& newest = memory.own_detection[static_cast<std::size_t>(detection.target)];
-  newest = std::max(newest, detection.stamp);
+  At(lane).Detect(detection);
 }
 
 template <class T>
