@@ -121,9 +121,9 @@ void Policy::Mean(const float* observation, float* action) const {
     for (; i + 4 <= layer.inputs; i += 4, column += 4 * layer.padded) {
       const AlignedConst c0(column, layer.padded), c1(column + layer.padded, layer.padded),
           c2(column + 2 * layer.padded, layer.padded), c3(column + 3 * layer.padded, layer.padded);
-      sum = (((AlignedConst(so_far, layer.padded) + c0 * in[i]) + c1 * in[i + 1]) +
-             c2 * in[i + 2]) +
-            c3 * in[i + 3];
+      sum =
+          (((AlignedConst(so_far, layer.padded) + c0 * in[i]) + c1 * in[i + 1]) + c2 * in[i + 2]) +
+          c3 * in[i + 3];
       so_far = out;
     }
     for (; i < layer.inputs; ++i, column += layer.padded) {
