@@ -18,22 +18,44 @@ void Describe(CoordinatedTurnOptions* o, config::Table* t) {
 class CoordinatedTurn : public SteeredMotion {
  public:
   CoordinatedTurn(const CoordinatedTurnOptions& options, const MotionSetup& setup)
-      : SteeredMotion(setup), options_(options) {}
+      : SteeredMotion(setup),
+        options_(options),
+        turns_(static_cast<std::size_t>(kLanes * setup.target.count)) {}
+
+  void Reset(int lane) override {
+    for (int k = 0; k < config().count; ++k) TurnOf(lane, k).period = -1;
+  }
 
  private:
+  struct Turn {
+    std::int64_t period = -1;  ///< number of the turn period in which it was drawn; -1: none
+    double rate_radps = 0.0;
+    Vec3<double> axis;
+  };
+
+  Turn& TurnOf(int lane, int target) {
+    return turns_[static_cast<std::size_t>(lane * config().count + target)];
+  }
+
   Vec3<double> Steer(const Situation& now) override {
-    const double time = dt() * now.clock.step;
+    Turn& turn = TurnOf(now.lane, now.target);
+    const auto period = static_cast<std::uint32_t>(dt() * now.clock.step / options_.period_s);
+    if (period != turn.period) Draw(now, period, &turn);
+    return TurnTowards(now.v_WT, Cross(turn.axis, now.v_WT), turn.rate_radps * dt());
+  }
+
+  void Draw(const Situation& now, std::uint32_t period, Turn* turn) const {
+    turn->period = period;
     Random random =
-        now.clock.DrawAt(Stream::kTarget, static_cast<std::uint32_t>(time / options_.period_s),
-                         static_cast<std::uint32_t>(now.target));
-    const double rate =
+        now.clock.DrawAt(Stream::kTarget, period, static_cast<std::uint32_t>(now.target));
+    turn->rate_radps =
         Clip(2.0 * random.Uniform() * options_.rate_radps, 0.0, config().max_turn_rate_radps);
-    const Vec3<double> axis{random.Normal(), random.Normal(), random.Normal()};
-    const Vec3<double> upright{0.0, 0.0, axis.z};
-    return TurnTowards(now.v_WT, Cross(open_water() ? upright : axis, now.v_WT), rate * dt());
+    turn->axis = {random.Normal(), random.Normal(), random.Normal()};
+    if (open_water()) turn->axis.x = turn->axis.y = 0.0;
   }
 
   CoordinatedTurnOptions options_;
+  std::vector<Turn> turns_;  // [lanes, targets]
 };
 
 std::unique_ptr<TargetMotion> MakeCoordinatedTurn(const CoordinatedTurnOptions& options,

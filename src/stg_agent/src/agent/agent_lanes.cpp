@@ -62,14 +62,15 @@ void LanedAgent<T>::Reset(int lane, std::uint32_t episode, const dynamics::Cue& 
 template <class T>
 void LanedAgent<T>::Detect(int lane, const dynamics::Detection& detection) {
   if (!present(lane)) return;
-  At(lane).Detect(detection);
-  EntityMemory& memory = memory_[static_cast<std::size_t>(lane)];
-  if (detection.target < 0 || detection.target >= model().target.count) return;
-  if (!search_.empty() && detection.target == inbox(lane).target()) {
-    search_[static_cast<std::size_t>(lane)].Detect(detection);
+  if (detection.target >= 0 && detection.target < model().target.count) {
+    if (!search_.empty() && detection.target == inbox(lane).target()) {
+      search_[static_cast<std::size_t>(lane)].Detect(detection);
+    }
+    TimeNs& newest = memory_[static_cast<std::size_t>(lane)]
+                         .own_detection[static_cast<std::size_t>(detection.target)];
+    newest = std::max(newest, detection.stamp);
   }
-  TimeNs& newest = memory.own_detection[static_cast<std::size_t>(detection.target)];
-  newest = std::max(newest, detection.stamp);
+  At(lane).Detect(detection);
 }
 
 template <class T>
@@ -84,8 +85,7 @@ void LanedAgent<T>::Receive(int lane, const acoustics::Reception& reception) {
     return;
   }
   if (reception.source < model().run.agents) links_->Learn(lane, reception);
-  const std::optional<NeighbourState> state = At(lane).Receive(reception);
-  if (state) neighbours_.Update(lane, *state);
+  neighbours_.Update(lane, At(lane).Receive(reception));
 }
 
 template <class T>
@@ -117,7 +117,8 @@ void LanedAgent<T>::Think(const dynamics::Navigation<T>& nav, const Mask<T>& lan
   const T taking_part = Select(lanes, T(1.0), T(0.0));
   for (int lane = 0; lane < kLanesOf<T>; ++lane) {
     if (Lane(taking_part, lane) == 0.0) continue;
-    Attend(lane, OfLane(nav.stamp, lane));
+    Follow(lane, OfLane(nav.stamp, lane));
+    if (model().fleet.changes()) Attend(lane, OfLane(nav.stamp, lane));
     const OwnReckoning own{Lane(nav.p_WB, lane), Lane(nav.position_std_m, lane),
                            OfLane(nav.fix_stamp, lane), Lane(nav.p_WF, lane),
                            Lane(nav.fix_std_m, lane)};
@@ -143,14 +144,17 @@ void LanedAgent<T>::Think(const dynamics::Navigation<T>& nav, const Mask<T>& lan
 }
 
 template <class T>
-void LanedAgent<T>::Attend(int lane, TimeNs now) {
+void LanedAgent<T>::Follow(int lane, TimeNs now) {
   EntityMemory& memory = memory_[static_cast<std::size_t>(lane)];
   if (memory.follow >= 0 && memory.follow != inbox(lane).target()) {
     At(lane).Follow(memory.follow);
     memory.followed_since = now;
   }
   memory.follow = -1;
-  if (!model().fleet.changes()) return;
+}
+
+template <class T>
+void LanedAgent<T>::Attend(int lane, TimeNs now) {
   const bool there = model().fleet.present(id(), Seconds(now));
   if (there && !present(lane)) {
     dynamics::Cue none;
@@ -192,14 +196,12 @@ Packet LanedAgent<T>::MakePacket(int lane) const {
 
 template <class T>
 AgentView LanedAgent<T>::view(int lane) const {
-  std::array<double, dynamics::kMaxActionSize> action;
-  for (std::size_t k = 0; k < action.size(); ++k) action[k] = Lane(mind_.action[k], lane);
   return {model(),
           inbox(lane),
           neighbours(lane),
-          LaneOf(mind_.knowledge, lane),
-          action,
-          SightReader(neighbours_.sights(), lane),
+          mind_,
+          neighbours_.sights(),
+          lane,
           &memory_[static_cast<std::size_t>(lane)],
           search_.empty() ? nullptr : &search_[static_cast<std::size_t>(lane)]};
 }

@@ -45,9 +45,4 @@ void NeighbourTable::Forget(TimeNs now) {
   known_.resize(kept);
 }
 
-void NeighbourTable::MarkRead() {
-  for (const int id : known_) slots_[static_cast<std::size_t>(id)].unread_target = false;
-  unread_ = false;
-}
-
 }  // namespace stg::agent

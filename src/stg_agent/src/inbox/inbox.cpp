@@ -66,28 +66,34 @@ void Inbox::Detect(const dynamics::Detection& detection) {
   pending.has_detection = true;
 }
 
-std::optional<NeighbourState> Inbox::Receive(const acoustics::Reception& reception) {
+NeighbourState Inbox::Receive(const acoustics::Reception& reception) {
+  NeighbourState state = Decode(reception);
+  if (state.source < 0) return state;
+  if (localizer_ != nullptr) {
+    localizer_->Hear(state, reception);
+    if (state.source >= constants_->model.run.agents) return state;  // a station
+    if (surfacing_) surfacing_->Hear(state);
+    ToOwnFrame(&state);
+  }
+  if (state.has_target) Hear(state);
+  return state;
+}
+
+NeighbourState Inbox::Decode(const acoustics::Reception& reception) {
+  const acoustics::ByteView& bytes = reception.payload;
+  Vec3<double> near;
+  if (localizer_ != nullptr) {
+    const int source = PacketCodec::SourceOf(bytes.data, bytes.size);
+    if (source >= 0 && source < constants_->model.members()) near = localizer_->NearTo(source);
+  }
   try {
-    const acoustics::ByteView& bytes = reception.payload;
-    Vec3<double> near;
-    if (localizer_ != nullptr) {
-      const int source = PacketCodec::SourceOf(bytes.data, bytes.size);
-      if (source >= 0 && source < constants_->model.members()) near = localizer_->NearTo(source);
-    }
-    NeighbourState state =
-        constants_->codec.Decode(bytes.data, bytes.size, reception.arrival, near);
-    if (localizer_ != nullptr) {
-      localizer_->Hear(state, reception);
-      if (state.source >= constants_->model.run.agents) return {};  // a station
-      if (surfacing_) surfacing_->Hear(state);
-      ToOwnFrame(&state);
-    }
-    if (state.has_target) Hear(state);
-    return state;
+    return constants_->codec.Decode(bytes.data, bytes.size, reception.arrival, near);
   } catch (const UserError&) {
     ++refused_packets_;  // a packet may be damaged on its way
-    return {};
   }
+  NeighbourState none;
+  none.source = -1;
+  return none;
 }
 
 void Inbox::ToOwnFrame(NeighbourState* state) const {

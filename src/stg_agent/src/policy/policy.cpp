@@ -113,7 +113,7 @@ void Policy::Mean(const float* observation, float* action) const {
   for (std::size_t l = 0; l < packed_.size(); ++l) {
     const Packed& layer = packed_[l];
     Aligned sum(out, layer.padded);
-    sum = AlignedConst(layer.bias.data(), layer.padded);
+    const float* so_far = layer.bias.data();
     // Column by column: each output is summed in the order of the inputs, for any SIMD width. Four
     // columns at once need fewer stores.
     const float* column = layer.weight.data();
@@ -121,10 +121,14 @@ void Policy::Mean(const float* observation, float* action) const {
     for (; i + 4 <= layer.inputs; i += 4, column += 4 * layer.padded) {
       const AlignedConst c0(column, layer.padded), c1(column + layer.padded, layer.padded),
           c2(column + 2 * layer.padded, layer.padded), c3(column + 3 * layer.padded, layer.padded);
-      sum = (((sum + c0 * in[i]) + c1 * in[i + 1]) + c2 * in[i + 2]) + c3 * in[i + 3];
+      sum =
+          (((AlignedConst(so_far, layer.padded) + c0 * in[i]) + c1 * in[i + 1]) + c2 * in[i + 2]) +
+          c3 * in[i + 3];
+      so_far = out;
     }
     for (; i < layer.inputs; ++i, column += layer.padded) {
-      sum += AlignedConst(column, layer.padded) * in[i];
+      sum = AlignedConst(so_far, layer.padded) + AlignedConst(column, layer.padded) * in[i];
+      so_far = out;
     }
     const bool last = l + 1 == packed_.size();
     if (last && parameters_.choices.size() > 0) {

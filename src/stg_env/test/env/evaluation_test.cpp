@@ -55,6 +55,19 @@ TEST(Evaluate, EpisodeEIsTheEpisodeOfSeedPlusEHoweverManyAreRun) {
   EXPECT_EQ(many[2].Items(), Fly(s, c, 3, 3000)[2].Items());
 }
 
+TEST(Evaluate, AMixFliesItsScenariosInTurn) {
+  const std::vector<Scenario> mix = {Short(Shipped("medium_release"), 30),
+                                     Short(Shipped("hard_release"), 30)};
+  const agent::Decider c = agent::MakeDecider("pursuit", mix[0].model());
+  WorkerPool pool(2);
+  const auto mixed = Evaluate(EnvFactory(mix), c, {20, 3000, kMixBlock}, &pool);
+  ASSERT_EQ(mixed.size(), 20u);
+  for (std::size_t e = 0; e < mixed.size(); ++e) {
+    const Scenario& s = mix[e / kMixBlock % mix.size()];
+    EXPECT_EQ(mixed[e].Items(), Fly(s, c, 1, 3000 + e)[0].Items()) << e;
+  }
+}
+
 TEST(Evaluate, ReportsProgressUpToTheNumberOfEpisodes) {
   const Scenario s = Short(Shipped("medium_release"), 5);
   int last = 0;

@@ -71,6 +71,8 @@ class LanedAgent {
   void Think(const dynamics::Navigation<T>& nav, const Mask<T>& lanes);
   /// Sets the vertical velocity of an AUV that surfaces for a fix, until it is back.
   void Surface(T* action) const;
+  /// Follows the target that was chosen since the last decision.
+  void Follow(int lane, TimeNs now);
   /// Lets the AUV leave and join at the times of the scenario.
   void Attend(int lane, TimeNs now);
 

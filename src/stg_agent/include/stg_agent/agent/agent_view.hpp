@@ -6,6 +6,7 @@
 #include "auv_common/numbers/short_list.hpp"
 #include "auv_dynamics/control/control_config.hpp"
 #include "stg_agent/agent/entity_memory.hpp"
+#include "stg_agent/agent/mind.hpp"
 #include "stg_agent/graph/knowledge.hpp"
 #include "stg_agent/graph/neighbourhood.hpp"
 #include "stg_agent/graph/task_view.hpp"
@@ -25,17 +26,20 @@ class AgentView {
  public:
   using Action = std::array<double, dynamics::kMaxActionSize>;
 
+  /// @param mind, sights of all lanes of the agent; the view is of one of them
+  template <class T>
   AgentView(const AgentModel& model, const Inbox& inbox, const NeighbourTable& neighbours,
-            const Knowledge<double>& knowledge, const Action& action, const SightReader& sights,
-            EntityMemory* memory, SearchMemory* search = nullptr)
+            const Mind<T>& mind, const std::vector<NeighbourSight<T>>& sights, int lane,
+            EntityMemory* memory, SearchMemory* search)
       : model_(model),
         inbox_(inbox),
         neighbours_(neighbours),
-        knowledge_(knowledge),
-        action_(action),
-        sights_(sights),
+        knowledge_(LaneOf(mind.knowledge, lane)),
+        sights_(sights, lane),
         memory_(memory),
-        search_(search) {}
+        search_(search) {
+    for (std::size_t k = 0; k < action_.size(); ++k) action_[k] = Lane(mind.action[k], lane);
+  }
 
   const AgentModel& model() const { return model_; }
   int id() const { return inbox_.id(); }

@@ -37,7 +37,11 @@ class NeighbourTable {
   /// Whether the target estimate of this neighbour is unread.
   bool unread(int id) const { return slot(id).unread_target; }
   /// Marks all target estimates as read.
-  void MarkRead();
+  void MarkRead() {
+    if (!unread_) return;
+    for (const int id : known_) slots_[static_cast<std::size_t>(id)].unread_target = false;
+    unread_ = false;
+  }
 
  private:
   struct Slot {

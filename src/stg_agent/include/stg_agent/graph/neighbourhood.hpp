@@ -46,6 +46,9 @@ class SightReader {
   NeighbourSight<double> at(int id) const {
     return one_ != nullptr ? one_[id] : LaneOf(lanes_[id], lane_);
   }
+  double distance_m(int id) const {
+    return one_ != nullptr ? one_[id].distance_m : Lane(lanes_[id].distance_m, lane_);
+  }
 
  private:
   const NeighbourSight<double>* one_ = nullptr;  // either this

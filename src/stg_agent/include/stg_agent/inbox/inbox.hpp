@@ -42,8 +42,9 @@ class Inbox {
   void Detect(const dynamics::Detection& detection);
 
   /// Takes a packet that the modem received, and returns the state in it. A packet that cannot be
-  /// decoded is counted and returns none.
-  std::optional<NeighbourState> Receive(const acoustics::Reception& reception);
+  /// decoded is counted, and its state has the source -1. A station's packet has a source after the
+  /// last AUV.
+  NeighbourState Receive(const acoustics::Reception& reception);
 
   /// Takes the answer to an own ping of another member of the network.
   void HearAnswer(const acoustics::Reception& answer) {
@@ -99,6 +100,7 @@ class Inbox {
   bool Believes(int target) const { return target >= first_ && target < first_ + beliefs(); }
   std::size_t IndexOf(int target) const { return static_cast<std::size_t>(target - first_); }
   const TargetFilter& Of(int target) const { return *filters_[IndexOf(target)]; }
+  NeighbourState Decode(const acoustics::Reception& reception);
   void Hear(const NeighbourState& state);
   void FuseNewest(const NeighbourTable& neighbours);
   /// Transforms another AUV's report from its frame to the own frame.

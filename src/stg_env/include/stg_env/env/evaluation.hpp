@@ -13,7 +13,7 @@ namespace stg::env {
 using ActFunction =
     std::function<void(const VectorEnv& env, const float* observations, double* actions)>;
 /// Makes the ActFunction of one block of environments, which `worker` of the pool runs (0 without a
-/// pool). The function may use only memory of its own or of that worker.
+/// pool) for any number of episodes. The function may use only memory of its own or of that worker.
 using ActFactory = std::function<ActFunction(const VectorEnv& env, int worker)>;
 
 /// The episodes of an evaluation.

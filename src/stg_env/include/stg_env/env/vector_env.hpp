@@ -154,6 +154,8 @@ class EnvFactory {
   explicit EnvFactory(const Scenario& scenario) : EnvFactory(std::vector<Scenario>{scenario}) {}
 
   VectorEnv Make(const VectorEnvOptions& options) const { return {mix_, options}; }
+  /// Number of scenarios of the mix.
+  int scenarios() const { return static_cast<int>(mix_.size()); }
   /// The agents' model of the first scenario.
   agent::AgentModel model() const { return mix_.front().model(); }
 

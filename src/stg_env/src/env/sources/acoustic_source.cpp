@@ -75,8 +75,9 @@ void AcousticSource::Act(const dynamics::World&, int i, const Pack* wanted,
   for (int k = 0; k < action_size_; ++k) rounded[k] = RoundToFloat(wanted[k]);
   agent::AgentLanes& agent = agents_[static_cast<std::size_t>(i)];
   agent.Act(rounded);
-  std::copy(std::begin(agent.knowledge().tau), std::end(agent.knowledge().tau), tau->begin());
-  std::copy(agent.action().begin(), agent.action().end(), action->begin());
+  // std::copy of packs is a call, which costs more than they do.
+  for (std::size_t k = 0; k < tau->size(); ++k) (*tau)[k] = agent.knowledge().tau[k];
+  for (std::size_t k = 0; k < agent.action().size(); ++k) (*action)[k] = agent.action()[k];
 }
 
 void AcousticSource::Send(const dynamics::World& world) {
