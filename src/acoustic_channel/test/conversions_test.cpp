@@ -28,6 +28,9 @@ TEST(ReceivedPacket, RoundTripKeepsAllThatAModemKnows) {
   r.noise_level_db = 60.25;
   r.sinr_db = 44.25;
   r.doppler_mps = -1.5;
+  r.has_direction = true;
+  r.azimuth_rad = 0.7;
+  r.elevation_rad = -0.4;
   r.payload = {bytes, sizeof(bytes)};
   for (const int destination : {5, acoustics::kToAll}) {
     r.destination = destination;
@@ -50,6 +53,9 @@ TEST(ReceivedPacket, RoundTripKeepsAllThatAModemKnows) {
     EXPECT_EQ(back.noise_level_db, r.noise_level_db);
     EXPECT_EQ(back.sinr_db, r.sinr_db);
     EXPECT_EQ(back.doppler_mps, r.doppler_mps);
+    EXPECT_TRUE(back.has_direction);
+    EXPECT_EQ(back.azimuth_rad, r.azimuth_rad);
+    EXPECT_EQ(back.elevation_rad, r.elevation_rad);
     ASSERT_EQ(back.payload.size, sizeof(bytes));
     EXPECT_TRUE(std::equal(bytes, bytes + sizeof(bytes), back.payload.data));
   }

@@ -43,6 +43,7 @@ ChannelNode::ChannelNode(const MakeChannel& make)
       auvs_(static_cast<std::size_t>(scenario_.run.agents)),
       positions_(static_cast<std::size_t>(channel_->bodies())),
       velocities_(positions_.size()),
+      attitudes_(auvs_.size()),
       reports_(IndicesOf(scenario_.run.agents)),
       health_("acoustic channel", "simulation", [this](auto& status) { Report(status); }) {
   ros::NodeHandle node;
@@ -129,6 +130,7 @@ void ChannelNode::OnSwarm(const auv_msgs::SwarmState::ConstPtr& message) {
   for (std::size_t i = 0; i < auvs_.size(); ++i) {
     positions_[i] = VectorOf(message->poses[i].position);
     velocities_[i] = VectorOf(message->velocities[i]);
+    attitudes_[i] = AttitudeOf(message->poses[i]);
   }
   for (std::size_t k = 0; k < targets; ++k) {
     positions_[auvs_.size() + k] = VectorOf(message->target_positions[k]);
@@ -226,6 +228,7 @@ void ChannelNode::Close() {
   const bool watched = packets_.getNumSubscribers() > 0;
   reports_.Begin(start_);
   channel_->Observe(watched ? &reports_ : nullptr);
+  channel_->SetAttitudes(attitudes_);
   channel_->Step(now, step_, positions_, velocities_, offered_);
   for (int i = 0; i < scenario_.run.agents; ++i) {
     received_.clear();

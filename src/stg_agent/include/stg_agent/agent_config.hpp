@@ -77,6 +77,8 @@ struct AgentModel {
   bool locates() const;
   /// Whether it does so by ranges from pings.
   bool pings_members() const { return locates() && localization.by == RangesBy::kPing; }
+  /// Whether their modems measure the directions of received packets.
+  bool measures_directions() const { return locates() && localization.usbl_std_deg > 0.0; }
   /// Now and then one of them goes up for a fix by satellite.
   bool surfaces() const { return locates() && localization.surface_std_m > 0.0; }
   int observation_size() const { return ObservationSpec(observation).size(); }

@@ -119,9 +119,13 @@ void LanedAgent<T>::Think(const dynamics::Navigation<T>& nav, const Mask<T>& lan
     if (Lane(taking_part, lane) == 0.0) continue;
     Follow(lane, OfLane(nav.stamp, lane));
     if (model().fleet.changes()) Attend(lane, OfLane(nav.stamp, lane));
-    const OwnReckoning own{Lane(nav.p_WB, lane), Lane(nav.position_std_m, lane),
-                           OfLane(nav.fix_stamp, lane), Lane(nav.p_WF, lane),
-                           Lane(nav.fix_std_m, lane)};
+    const OwnReckoning own{Lane(nav.p_WB, lane),
+                           Lane(nav.position_std_m, lane),
+                           OfLane(nav.fix_stamp, lane),
+                           Lane(nav.p_WF, lane),
+                           Lane(nav.fix_std_m, lane),
+                           {Lane(nav.q_WB[0], lane), Lane(nav.q_WB[1], lane),
+                            Lane(nav.q_WB[2], lane), Lane(nav.q_WB[3], lane)}};
     answers_[static_cast<std::size_t>(lane)].Give(
         OfLane(nav.stamp, lane), own, Lane(nav.heading_std_rad, lane),
         [this, lane](const dynamics::Detection& detection) { Detect(lane, detection); });

@@ -17,9 +17,10 @@ double ShareKept(double dt_s, double memory_s) { return std::exp(-dt_s / memory_
 
 JointFilter::JointFilter(const LocalizationConfig& config, double start_std_m, int auvs,
                          const std::vector<AnchorModel>& anchors, int self,
-                         const ClockModel& clocks)
+                         const ClockModel& clocks, const HeadingModel& heading)
     : config_(config),
       clocks_(clocks),
+      heading_(heading),
       start_variance_(Squared(start_std_m)),
       auvs_(auvs),
       self_(self),
@@ -28,6 +29,8 @@ JointFilter::JointFilter(const LocalizationConfig& config, double start_std_m, i
       anchor_clocks_(anchors.size(), -1),
       observers_(static_cast<std::size_t>(slots_)) {
   n_ = AnchorAt(auvs_ + static_cast<int>(anchors_.size()));
+  first_heading_ = n_;
+  if (heading_.estimated) n_ += slots_;
   first_clock_ = n_;
   if (clocks_.estimated) {
     n_ += 2 * slots_;
@@ -59,6 +62,21 @@ void JointFilter::StartClock(int clock, double t_s) {
   P(clock + 1, clock + 1) = rate;
 }
 
+/// Sets the error of a heading without any measurement, t_s after the start.
+void JointFilter::StartHeading(int id, double t_s) {
+  const int h = HeadingAt(id);
+  if (h < 0) return;
+  Scale(h, 0.0);
+  P(h, h) = Squared(heading_.std_rad) + Squared(heading_.walk_rad) * t_s;
+}
+
+void JointFilter::Turn(int id, const Vec3<double>& way) {
+  const int slot = SlotOf(id);
+  if (slot < 0 || !heading_.estimated) return;
+  Grow(ErrorAt(slot), first_heading_ + slot, -way.y);
+  Grow(ErrorAt(slot) + 1, first_heading_ + slot, way.x);
+}
+
 void JointFilter::Clear() {
   now_ = 0;
   std::fill(x_.begin(), x_.end(), 0.0);
@@ -76,6 +94,7 @@ void JointFilter::Clear() {
       P(ErrorAt(slot) + axis, ErrorAt(slot) + axis) = start_variance_;
       P(ShearAt(slot) + axis, ShearAt(slot) + axis) = Squared(config_.shear_std_mps);
     }
+    StartHeading(o.id, 0.0);
   }
   for (int axis = 0; axis < 2; ++axis) {
     P(CurrentAt() + axis, CurrentAt() + axis) = Squared(config_.current_std_mps);
@@ -119,6 +138,7 @@ void JointFilter::Predict(TimeNs now) {
   if (dt_s <= 0.0) return;
   now_ = now;
   for (int clock = first_clock_; clock < n_; clock += 2) Grow(clock, clock + 1, dt_s);
+  for (int h = first_heading_; h < first_clock_; ++h) P(h, h) += Squared(heading_.walk_rad) * dt_s;
   const int C = CurrentAt();
   for (int slot = 0; slot < slots_; ++slot) {
     if (!observers_[static_cast<std::size_t>(slot)].adrift) continue;
@@ -209,6 +229,7 @@ void JointFilter::Start(int slot, int id) {
     P(e, w) -= shear * t;
     P(w, e) -= shear * t;
   }
+  StartHeading(id, t);
   if (first_clock_ < n_) StartClock(first_clock_ + 2 * slot, t);
 }
 

@@ -93,7 +93,27 @@ void JointFilter::Update(const double* column, double gain, double less) {
   }
 }
 
-bool JointFilter::Take(const BearingReading& z) {
+bool JointFilter::Take(const BearingReading& z) { return TakeAzimuth(z, -1); }
+
+bool JointFilter::Take(const DirectionReading& z) {
+  double offset[2];
+  Offset(z.source, self_, z.p_source - z.p_receiver, std::max(0.0, Seconds(now_ - z.at)), offset);
+  const double level = std::hypot(offset[0], offset[1]);
+  if (level < kLeastLevel_m) return false;
+  BearingReading azimuth;
+  azimuth.receiver = self_;
+  azimuth.source = z.source;
+  azimuth.at = z.at;
+  azimuth.p_receiver = z.p_receiver;
+  azimuth.p_source = z.p_source;
+  azimuth.azimuth_rad = z.azimuth_rad;
+  // The same error across the line of sight is a larger angle in the plane.
+  azimuth.std_rad = z.std_rad * std::hypot(level, z.p_source.z - z.p_receiver.z) / level;
+  const bool taken = TakeAzimuth(azimuth, HeadingAt(self_));
+  return TakeElevation(z) || taken;
+}
+
+bool JointFilter::TakeAzimuth(const BearingReading& z, int heading) {
   const double age_s = std::max(0.0, Seconds(now_ - z.at));
   double offset[2];
   Offset(z.source, z.receiver, z.p_source - z.p_receiver, age_s, offset);
@@ -108,13 +128,47 @@ bool JointFilter::Take(const BearingReading& z) {
     AddError(z.source, axis, -along[axis] / level, age_s, &line);
     AddError(z.receiver, axis, along[axis] / level, age_s, &line);
   }
+  if (heading >= 0) row.Add(heading, 1.0);
   std::array<double, kMostJointStates> column;
   const double lengthwise = Column(line, column.data());
   const double sidewise = Column(row, column.data());
   // In second order, a bearing depends on the distance.
   const double noise = Squared(z.std_rad) + Wander(age_s) / Squared(level) + lengthwise * sidewise;
   const double S = sidewise + noise;
-  const double innovation = WrapAngle(z.azimuth_rad - std::atan2(offset[1], offset[0]));
+  const double turned = heading < 0 ? 0.0 : x_[static_cast<std::size_t>(heading)];
+  const double innovation = WrapAngle(z.azimuth_rad - turned - std::atan2(offset[1], offset[0]));
+  nis_ = innovation * innovation / S;
+  if (nis_ > Squared(config_.gate_sigma)) return false;
+  Update(column.data(), innovation / S, 1.0 / S);
+  return true;
+}
+
+/// With both depths, the elevation is a measurement of the horizontal distance.
+bool JointFilter::TakeElevation(const DirectionReading& z) {
+  const double age_s = std::max(0.0, Seconds(now_ - z.at));
+  double offset[2];
+  Offset(z.source, self_, z.p_source - z.p_receiver, age_s, offset);
+  const double level = std::hypot(offset[0], offset[1]), up = z.p_source.z - z.p_receiver.z;
+  if (level < kLeastLevel_m) return false;
+  const double along[2] = {offset[0] / level, offset[1] / level};
+  const double square = level * level + up * up, slope = -up / square;
+  Row row, bend;
+  for (int axis = 0; axis < 2; ++axis) {
+    const double across = axis == 0 ? -along[1] : along[0];
+    AddError(z.source, axis, -slope * along[axis], age_s, &row);
+    AddError(self_, axis, slope * along[axis], age_s, &row);
+    AddError(z.source, axis, across, age_s, &bend);
+    AddError(self_, axis, -across, age_s, &bend);
+  }
+  std::array<double, kMostJointStates> column;
+  // Second order, across and along the line.
+  const double curved = Column(bend, column.data()) * slope / level;
+  const double variance = Column(row, column.data());
+  const double steeper = slope == 0.0 ? 0.0 : variance / slope * (-2.0 * level / square);
+  const double noise = Squared(z.std_rad) + Squared(slope) * Wander(age_s) +
+                       0.5 * (curved * curved + steeper * steeper);
+  const double S = variance + noise;
+  const double innovation = z.elevation_rad - std::atan2(up, level) - 0.5 * (curved + steeper);
   nis_ = innovation * innovation / S;
   if (nis_ > Squared(config_.gate_sigma)) return false;
   Update(column.data(), innovation / S, 1.0 / S);

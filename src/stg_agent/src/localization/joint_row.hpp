@@ -8,8 +8,8 @@
 namespace stg::agent {
 
 /// A packet names 31 members. The most states are those of 8 AUVs and 23 beacons with estimated
-/// clocks: 6 of each AUV, 4 of each beacon, and 3 of all.
-inline constexpr int kMostJointStates = 6 * JointFilter::kMostObservers + 4 * 23 + 3;
+/// clocks and headings: 7 of each AUV, 4 of each beacon, and 3 of all.
+inline constexpr int kMostJointStates = 7 * JointFilter::kMostObservers + 4 * 23 + 3;
 
 inline double Squared(double x) { return x * x; }
 

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "auv_common/numbers/attitude.hpp"
 #include "stg_agent/agent_config.hpp"
 #include "stg_agent/localization/joint_filter.hpp"
 
@@ -33,6 +34,14 @@ inline std::vector<AnchorModel> AnchorsOf(const AgentModel& s) {
 inline ClockModel ClocksOf(const AgentModel& s) {
   return {s.localization.clocks == Clocks::kEstimated && !s.pings_members(),
           s.channel.modem.clock_offset_std_s, 1e-6 * s.channel.modem.clock_drift_std_ppm};
+}
+
+/// What an AUV assumes of all headings. It needs them if its modem measures directions.
+/// @param self index of the member of the network
+inline HeadingModel HeadingOf(const AgentModel& s, int self) {
+  const double rad = kPi / 180.0;
+  return {s.measures_directions() && self < s.run.agents, s.navigation.heading_std_deg * rad,
+          s.navigation.gyro_walk_deg_per_sqrt_h * rad / 60.0};
 }
 
 }  // namespace stg::agent

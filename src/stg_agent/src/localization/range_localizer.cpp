@@ -52,8 +52,8 @@ class RangeLocalizer : public Localizer {
         surface_z_m_(s.channel.water.surface_z_m),
         chart_(ChartOf(s)),
         clocks_(ClocksOf(s)),
-        filter_(s.localization, s.navigation.start_std_m, s.run.agents, AnchorsOf(s), self,
-                clocks_),
+        filter_(s.localization, s.navigation.start_std_m, s.run.agents, AnchorsOf(s), self, clocks_,
+                HeadingOf(s, self)),
         ways_(static_cast<std::size_t>(s.run.agents + s.stations.count())),
         measured_(s.run.agents, s.run.agents + s.stations.count()),
         own_way_(s.run),
@@ -61,6 +61,8 @@ class RangeLocalizer : public Localizer {
         pings_(s.pings_members()),
         by_ping_(self),
         bearing_std_rad_(s.stations.usbl_std_deg * kPi / 180.0),
+        direction_std_rad_(s.measures_directions() ? s.localization.usbl_std_deg * kPi / 180.0
+                                                   : 0.0),
         fixes_(s.run.agents, self, TellingOf(s), s.run.decision_period() / 4) {
     pending_.reserve(kMostPending);
   }
@@ -95,6 +97,11 @@ class RangeLocalizer : public Localizer {
     letter.bearing = packet.bearing;
     letter.has_fix = packet.has_fix;
     letter.fix = packet.fix;
+    letter.has_direction = direction_std_rad_ > 0.0 && self_ < auvs_ && reception.has_direction &&
+                           std::isfinite(reception.azimuth_rad + reception.elevation_rad);
+    letter.azimuth_rad = reception.azimuth_rad;
+    letter.elevation_rad = reception.elevation_rad;
+    letter.arrival = reception.arrival;
     pending_.push_back(letter);
   }
 
@@ -105,9 +112,12 @@ class RangeLocalizer : public Localizer {
   }
 
   void Advance(TimeNs now, const OwnReckoning& own) override {
+    const bool goes_on = start_std_m_ >= 0.0;
+    const Vec3<double> way = own.p_WB - own_.p_WB;
     FollowOwn(now, own);
     filter_.Predict(now);
     if (self_ < auvs_) {
+      if (goes_on) filter_.Turn(self_, way);
       filter_.SetAdrift(self_, adrift_);
       filter_.SetDepth(self_, -own.p_WB.z);
       FixReading fix;
@@ -170,6 +180,9 @@ class RangeLocalizer : public Localizer {
     ToldBearing bearing;
     bool has_fix = false;
     ToldFix fix;
+    bool has_direction = false;
+    double azimuth_rad = 0.0, elevation_rad = 0.0;
+    TimeNs arrival = 0;
   };
 
   const ToldWay& Way(int id) const { return ways_[static_cast<std::size_t>(id)]; }
@@ -189,14 +202,16 @@ class RangeLocalizer : public Localizer {
     }
     if (self_ >= auvs_) adrift_ = false;
     own_ = own;
-    own_way_.Add(now, own.p_WB);
+    own_way_.Add(now, own);
   }
 
   void Read(TimeNs now, const Letter& letter) {
     filter_.Admit(letter.id, letter.way.generation);
     ToldWay& way = ways_[static_cast<std::size_t>(letter.id)];
+    const Vec3<double> before = way.empty() ? letter.way.p : way.newest().p;
     if (!way.Add(letter.way)) return;
     if (letter.id < auvs_) {
+      filter_.Turn(letter.id, letter.way.p - before);
       filter_.SetAdrift(letter.id, letter.adrift);
       filter_.SetDepth(letter.id, -letter.way.p.z);
     }
@@ -210,6 +225,7 @@ class RangeLocalizer : public Localizer {
       measured_.Add({letter.id, z.at, z.range_m});
       Take(now, z);
     }
+    if (letter.has_direction) ReadDirection(now, letter);
     if (letter.has_bearing) ReadBearing(now, letter);
     FixReading fix;
     if (letter.has_fix && now - letter.fix.stamp <= kOldest && filter_.knows(letter.id) &&
@@ -256,6 +272,26 @@ class RangeLocalizer : public Localizer {
     filter_.Take(z);
   }
 
+  /// Uses the direction from which the own modem received a packet. It is in body axes.
+  void ReadDirection(TimeNs now, const Letter& letter) {
+    DirectionReading z;
+    Mat3<double> R_WB;
+    if (!Way(letter.id).AtPacket(letter.way.transmit, 0, &z.at, &z.p_source) ||
+        !own_way_.At(z.at, &z.p_receiver) || !own_way_.Attitude(letter.arrival, &R_WB)) {
+      return;
+    }
+    if (now - z.at > kOldest || !filter_.knows(letter.id)) return;
+    const double c = std::cos(letter.elevation_rad);
+    const Vec3<double> line =
+        R_WB * Vec3<double>{c * std::cos(letter.azimuth_rad), c * std::sin(letter.azimuth_rad),
+                            std::sin(letter.elevation_rad)};
+    z.source = letter.id;
+    z.azimuth_rad = std::atan2(line.y, line.x);
+    z.elevation_rad = std::atan2(line.z, std::hypot(line.x, line.y));
+    z.std_rad = direction_std_rad_;
+    filter_.Take(z);
+  }
+
   /// The own packets are not received, but their times are known to within the age's resolution.
   bool OwnPacketAt(TimeNs stamp, TimeNs* at, Vec3<double>* p) const {
     *at = stamp;
@@ -291,7 +327,8 @@ class RangeLocalizer : public Localizer {
   std::size_t next_taken_ = 0;
   bool pings_;  // ranges are measured by pings
   PingRanges by_ping_;
-  double bearing_std_rad_;
+  double bearing_std_rad_;    // of those that stations measure
+  double direction_std_rad_;  // of those that the own modem measures; 0: none
   Fixes fixes_;
   OwnReckoning own_;
   bool adrift_ = true;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "auv_pings.hpp"
+#include "auv_usbl.hpp"
 
 namespace stg::agent {
 namespace {
@@ -74,6 +75,7 @@ class StationChannel : public Channel {
         observer_(observer),
         pings_(targets > 0 || model.pings_members() ? std::make_unique<AuvPings>(model, sensing)
                                                     : nullptr),
+        usbl_(model.measures_directions() ? std::make_unique<AuvUsbl>(model) : nullptr),
         packets_observer_(auvs_, pings_.get()) {
     const auto constants = std::make_shared<const AgentConstants>(model);
     for (int k = 0; k < model.stations.count(); ++k) stations_.emplace_back(constants, k);
@@ -90,6 +92,7 @@ class StationChannel : public Channel {
     water_->Reset(seed, episode);
     for (Station& s : stations_) s.Reset(seed, episode);
     if (pings_ != nullptr) pings_->Reset(seed, episode);
+    if (usbl_ != nullptr) usbl_->Reset(seed, episode);
   }
   void Observe(acoustics::PacketObserver* observer) override {
     packets_observer_.Pass(observer);
@@ -100,11 +103,16 @@ class StationChannel : public Channel {
   int bodies() const override { return auvs_ + targets_; }
   std::size_t max_payload() const override { return water_->max_payload(); }
   bool Due(int node, TimeNs t) override { return water_->Due(node, t); }
+  bool measures_directions() const override { return usbl_ != nullptr; }
+  void SetAttitudes(const std::vector<Mat3<double>>& R_WB) override {
+    if (usbl_ != nullptr) usbl_->Turn(R_WB);
+  }
 
   void Step(TimeNs t, std::uint32_t step, const std::vector<Vec3<double>>& p_W,
             const std::vector<Vec3<double>>& v_W,
             const std::vector<acoustics::Transmission>& offered) override {
     offered_ = offered;
+    now_ = t;
     for (int i = 0; i < auvs_; ++i) {
       positions_[At(i)] = p_W[At(i)];
       velocities_[At(i)] = v_W[At(i)];
@@ -142,6 +150,9 @@ class StationChannel : public Channel {
   void Deliver(int receiver, TimeNs until, std::vector<acoustics::Reception>* out) override {
     const std::size_t before = out->size();
     water_->Deliver(receiver, until, out);
+    if (usbl_ != nullptr) {
+      usbl_->Measure(receiver, now_, positions_, velocities_, before, out);
+    }
     if (pings_ != nullptr) pings_->Take(receiver, until, before, out);
   }
   acoustics::LinkStatistics Link(int source, int destination, TimeNs now) const override {
@@ -161,9 +172,11 @@ class StationChannel : public Channel {
   std::unique_ptr<Channel> water_;
   StationObserver* observer_;
   std::unique_ptr<AuvPings> pings_;  // null: there are no pings
+  std::unique_ptr<AuvUsbl> usbl_;    // null: AUVs measure no directions
   AuvPackets packets_observer_;
   std::vector<Station> stations_;
   std::vector<Packet> packets_;  // [stations]
+  TimeNs now_ = 0;               // of the next two
   std::vector<Vec3<double>> positions_, velocities_;
   std::vector<acoustics::Transmission> offered_;
   std::vector<acoustics::Reception> received_;
@@ -179,7 +192,8 @@ std::unique_ptr<Channel> MakeStationChannel(const AgentModel& model,
   const int targets = sensing.pings() ? model.target.count : 0;
   auto water = acoustics::MakeChannel(channel, NetworkRun(model.run, model.stations, targets),
                                       line_of_sight);
-  if (model.stations.count() + targets == 0 && !model.pings_members()) return water;
+  const bool bare = model.stations.count() + targets == 0 && !model.pings_members();
+  if (bare && !model.measures_directions()) return water;
   return std::make_unique<StationChannel>(model, sensing, targets, std::move(water), observer);
 }
 

@@ -17,6 +17,8 @@ struct DriftOptions {
   bool craft = false;
   double craft_std_m = 2.0;   ///< deviation of the position that the craft tells
   double usbl_std_deg = 0.0;  ///< deviation of the bearings at which the craft hears AUVs; 0: none
+  double head_std_deg = 0.0;  ///< deviation of the directions that AUV 0 measures; 0: none
+  HeadingModel headings;      ///< errors of the AUVs' headings
   int beacons = 0;
   double seconds = 3600.0;
   double slot_s = 1.25;
@@ -53,7 +55,7 @@ class DriftingSea {
 
   DriftResult Run(unsigned seed) {
     random_.seed(seed);
-    JointFilter filter(c_, 1.0, o_.auvs, anchors_, 0, o_.clocks);
+    JointFilter filter(c_, 1.0, o_.auvs, anchors_, 0, o_.clocks, o_.headings);
     const auto n = static_cast<std::size_t>(o_.auvs);
     std::vector<double> e(2 * n), w(2 * n), g(2 * anchors_.size());
     double C[2];
@@ -73,6 +75,19 @@ class DriftingSea {
     const auto ahead_s = [&](int id, double t) {
       return offset[static_cast<std::size_t>(id)] + rate[static_cast<std::size_t>(id)] * t;
     };
+    std::vector<double> h(n);
+    std::vector<Vec3<double>> told(n);
+    for (std::size_t i = 0; i < n && o_.headings.std_rad > 0.0; ++i) {
+      h[i] = o_.headings.std_rad * Normal();
+      told[i] = Told(static_cast<int>(i), 0.0, e, g);
+    }
+    /// The filter takes the way of an AUV since the last packet of which it knows.
+    const auto go = [&](int id, double t) {
+      if (o_.headings.std_rad <= 0.0 || id >= o_.auvs) return;
+      const Vec3<double> p = Told(id, t, e, g);
+      filter.Turn(id, p - told[static_cast<std::size_t>(id)]);
+      told[static_cast<std::size_t>(id)] = p;
+    };
     DriftResult r;
     const auto slots = static_cast<int>(o_.seconds / o_.slot_s);
     for (int s = 1; s <= slots; ++s) {
@@ -80,6 +95,13 @@ class DriftingSea {
       for (std::size_t k = 0; k < e.size(); ++k) {
         e[k] += -(C[k % 2] + w[k]) * dt + c_.reckoning_std_m * std::sqrt(dt) * Normal();
         Renew(c_.shear_std_mps, c_.shear_memory_s, dt, &w[k]);
+      }
+      for (std::size_t i = 0; i < n && o_.headings.std_rad > 0.0; ++i) {
+        const int id = static_cast<int>(i);
+        h[i] += o_.headings.walk_rad * std::sqrt(dt) * Normal();
+        const Vec3<double> way = True(id, t) - True(id, t - dt);
+        e[2 * i] -= h[i] * (way.y - (C[1] + w[2 * i + 1]) * dt);
+        e[2 * i + 1] += h[i] * (way.x - (C[0] + w[2 * i]) * dt);
       }
       for (double& x : C) Renew(c_.current_std_mps, c_.current_memory_s, dt, &x);
       for (std::size_t k = 0; k < g.size(); ++k) {
@@ -89,6 +111,7 @@ class DriftingSea {
       }
       const auto now = static_cast<TimeNs>(t * 1e9);
       filter.Predict(now);
+      go(0, t);
       const double period = o_.fix_period_s;
       if (period > 0.0 && t < o_.seconds && std::fmod(t, period) < 0.5 * dt) {
         filter.Take(FixReading{1, now, e[2] + 3.0 * Normal(), e[3] + 3.0 * Normal(), 3.0});
@@ -102,6 +125,8 @@ class DriftingSea {
         const bool late = std::uniform_real_distribution<double>()(random_) < o_.late;
         const double by = std::uniform_real_distribution<double>(5.0, 100.0)(random_);
         if (lost) continue;
+        if (receiver == 0) go(source, t);
+        if (receiver == 0 && o_.head_std_deg > 0.0) HearDirection(source, t, h[0], e, g, &filter);
         RangeReading z;
         z.receiver = receiver;
         z.source = source;
@@ -148,6 +173,21 @@ class DriftingSea {
     z.std_rad = o_.usbl_std_deg * kTurn / 180.0;
     const Vec3<double> way = True(source, t) - True(z.receiver, t);
     z.azimuth_rad = std::atan2(way.y, way.x) + z.std_rad * Normal();
+    filter->Take(z);
+  }
+  /// A direction that AUV 0 measures.
+  void HearDirection(int source, double t, double turned, const std::vector<double>& e,
+                     const std::vector<double>& g, JointFilter* filter) {
+    DirectionReading z;
+    z.source = source;
+    z.at = filter->now();
+    z.p_receiver = Told(0, t, e, g);
+    z.p_source = Told(source, t, e, g);
+    z.std_rad = o_.head_std_deg * kTurn / 180.0;
+    const Vec3<double> way = True(source, t) - True(0, t);
+    const double level = std::hypot(way.x, way.y);
+    z.azimuth_rad = std::atan2(way.y, way.x) + turned + z.std_rad * Norm(way) / level * Normal();
+    z.elevation_rad = std::atan2(way.z, level) + z.std_rad * Normal();
     filter->Take(z);
   }
   double Normal() { return std::normal_distribution<double>()(random_); }

@@ -59,6 +59,11 @@ class Channel {
                     const std::vector<Vec3<double>>& v_W,
                     const std::vector<Transmission>& offered) = 0;
 
+  /// True: nodes measure the direction of each reception, for which the channel needs SetAttitudes.
+  virtual bool measures_directions() const { return false; }
+  /// True attitudes of the nodes, before each Step. Directions are in body axes of the newest ones.
+  virtual void SetAttitudes(const std::vector<Mat3<double>>& /*R_WB*/) {}
+
   /// Appends all receptions of node `receiver` with arrival <= until to *out, oldest first (ties
   /// by source), each one once. No allocation in steady state.
   virtual void Deliver(int receiver, TimeNs until, std::vector<Reception>* out) = 0;

@@ -76,6 +76,9 @@ struct Reception {
   double noise_level_db = 0.0;  ///< re 1 uPa, in the modem's band
   double sinr_db = 0.0;         ///< signal to interference and noise
   double doppler_mps = 0.0;     ///< closing speed at transmission, positive closing
+  bool has_direction = false;   ///< the receiver measured the next two
+  double azimuth_rad = 0.0;     ///< of the sender in the receiver's body axes, from ahead to port
+  double elevation_rad = 0.0;   ///< likewise, above the body's horizontal plane
   std::uint32_t tag = 0;        ///< Transmission::tag; not on the air
   std::uint64_t header = 0;     ///< Transmission::header
   ByteView payload;             ///< valid until the channel's next Step or Reset; may be empty

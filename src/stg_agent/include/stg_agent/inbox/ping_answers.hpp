@@ -27,7 +27,7 @@ class PingAnswers {
   template <class Detect>
   void Give(TimeNs now, const OwnReckoning& own, double heading_std_rad, Detect&& detect) {
     if (!pings_) return;
-    way_.Add(now, own.p_WB);
+    way_.Add(now, own);
     dynamics::Detection detection;
     for (const Answer& answer : answers_) {
       if (Read(answer, own, heading_std_rad, &detection)) detect(detection);

@@ -27,6 +27,13 @@ struct ClockModel {
   double rate_std = 0.0;      ///< of d(clock)/dt - 1
 };
 
+/// Errors of the AUVs' headings.
+struct HeadingModel {
+  bool estimated = false;  ///< false: they only count as noise of the reckoned ways
+  double std_rad = 0.0;    ///< at the start
+  double walk_rad = 0.0;   ///< deviation of the random walk after a second
+};
+
 /// A range from the travel time of one packet. The positions are those that both members reported
 /// for the time at which the packet began to leave.
 struct RangeReading {
@@ -46,6 +53,16 @@ struct BearingReading {
   double std_rad = 0.0;
 };
 
+/// The direction of a received packet that the own modem measured, with positions as above. It is
+/// in the axes of the own navigation, so it has the error of the own heading.
+struct DirectionReading {
+  int source = 0;  ///< member of the network
+  TimeNs at = 0;
+  Vec3<double> p_receiver, p_source;              ///< [m]
+  double azimuth_rad = 0.0, elevation_rad = 0.0;  ///< of the source, from east and the horizontal
+  double std_rad = 0.0;                           ///< in each direction across the line of sight
+};
+
 /// A GPS fix of an AUV.
 struct FixReading {
   int member = 0;
@@ -58,10 +75,14 @@ struct FixReading {
 ///
 /// States: of each AUV the error e of its reckoned position and the velocity w by which its current
 /// differs from the common one; the common current C; the share kappa by which ranges are too long;
-/// for each station the error g of the position that it sends; where clocks are estimated, the
-/// error and the rate of the clock of each AUV and each beacon. For an AUV whose log measures
+/// for each station the error g of the position that it sends; where headings are estimated, the
+/// error h of each AUV's heading; where clocks are estimated, the error and the rate of the clock
+/// of each AUV and each beacon. For an AUV whose log measures
 /// against the water, de/dt = -(C + w) + noise; C, w and the errors of craft are Ornstein-Uhlenbeck
-/// processes, those of beacons and the rates of clocks constants.
+/// processes, those of beacons and the rates of clocks constants. h is a random walk; it turns the
+/// reckoned way d of its AUV, e += h J d with the quarter turn J, and the directions that the own
+/// modem measures. So ranges and directions of one beacon do not tell a turn of the whole picture
+/// around it, and the filter does not claim that they do.
 ///
 /// A range (1 + kappa) |p_j - p_l| of the age a depends on the errors at that time, e(t - a) = e +
 /// a (C + w), so no old states are stored. Its curvature across the line of sight is taken to
@@ -73,13 +94,16 @@ class JointFilter {
 
   /// @param auvs members 0 .. auvs - 1; the anchors follow @param self is never removed
   JointFilter(const LocalizationConfig& config, double start_std_m, int auvs,
-              const std::vector<AnchorModel>& anchors, int self, const ClockModel& clocks = {});
+              const std::vector<AnchorModel>& anchors, int self, const ClockModel& clocks = {},
+              const HeadingModel& heading = {});
 
   void Clear();
   /// Predicts all states to a time, which must not be before the last one.
   void Predict(TimeNs now);
   /// Sets whether the log of an AUV measures against the water (true) or the bottom.
   void SetAdrift(int id, bool adrift);
+  /// An AUV has reckoned this way, which the error of its heading has turned.
+  void Turn(int id, const Vec3<double>& way);
   /// Sets the depth of an AUV; with it changes the current.
   void SetDepth(int id, double depth_m);
   /// Adds an AUV that has no states yet. With more than kMostObservers, the AUV that was heard
@@ -90,6 +114,8 @@ class JointFilter {
   /// Takes a reading with a stamp up to now, between known members. False: the gate rejected it.
   bool Take(const RangeReading& reading);
   bool Take(const BearingReading& reading);
+  /// Uses azimuth and elevation, each with a gate of its own. False: neither was used.
+  bool Take(const DirectionReading& reading);
   bool Take(const FixReading& reading);
 
   /// Error of a reported position, at a time up to now.
@@ -124,12 +150,18 @@ class JointFilter {
   int CurrentAt() const { return 4 * slots_; }
   int ScaleAt() const { return CurrentAt() + 2; }
   int AnchorAt(int id) const { return ScaleAt() + 1 + 2 * (id - auvs_); }
+  /// State with the error of a known AUV's heading; -1: it is not estimated.
+  int HeadingAt(int id) const { return heading_.estimated ? first_heading_ + SlotOf(id) : -1; }
+  void StartHeading(int id, double t_s);
   /// State with the error of a known member's clock, as a length at kClockSound_mps [m]. The next
   /// state is its rate [m/s]. -1: the clock is right.
   int ClockAt(int id) const;
   void StartClock(int clock, double t_s);
   double& P(int r, int c) { return P_[static_cast<std::size_t>(r * n_ + c)]; }
   double P(int r, int c) const { return P_[static_cast<std::size_t>(r * n_ + c)]; }
+  /// @param heading state by which the bearing is turned; -1: none
+  bool TakeAzimuth(const BearingReading& reading, int heading);
+  bool TakeElevation(const DirectionReading& reading);
   void Scale(int i, double share);
   void Forget(int i, double share, double variance);
   void Grow(int i, int by, double share);
@@ -152,10 +184,12 @@ class JointFilter {
 
   LocalizationConfig config_;
   ClockModel clocks_;
+  HeadingModel heading_;
   double start_variance_;
   int auvs_, self_, slots_;
   std::vector<AnchorModel> anchors_;
   std::vector<int> anchor_clocks_;  // [anchors], the state; -1: the clock is right
+  int first_heading_;               // [rad], by slot
   int first_clock_, n_;             // clocks are the last states
   TimeNs now_ = 0;
   double nis_ = 0.0;

@@ -35,6 +35,8 @@ struct LocalizationConfig {
   double gate_sigma = 4.0;         ///< ranges farther off than this are rejected
   RangesBy by = RangesBy::kOneWay;
   double ping_period_s = 30.0;  ///< time between two pings of an AUV
+  /// Of the direction of a received packet, across the line of sight; 0: AUVs measure none.
+  double usbl_std_deg = 0.0;
   Clocks clocks = Clocks::kKnown;
   /// An AUV surfaces for a fix before the deviation of its own position is above this; 0: never.
   double surface_std_m = 0.0;

@@ -25,9 +25,10 @@ struct OwnReckoning {
   Vec3<double> p_WB;            ///< never corrected [m]
   double position_std_m = 0.0;  ///< stated by the navigation
   // The newest GPS fix, which does not correct p_WB.
-  TimeNs fix_stamp = 0;    ///< time of the fix
-  Vec3<double> p_WF = {};  ///< position at that time [m]
-  double fix_std_m = 0.0;  ///< of each horizontal component; 0: there was none
+  TimeNs fix_stamp = 0;                   ///< time of the fix
+  Vec3<double> p_WF = {};                 ///< position at that time [m]
+  double fix_std_m = 0.0;                 ///< of each horizontal component; 0: there was none
+  double q_WB[4] = {1.0, 0.0, 0.0, 0.0};  ///< attitude, with the error of the heading
 };
 
 /// Estimates the errors of the reckoned positions of this AUV and its neighbours. The reckoned

@@ -17,9 +17,10 @@ class StationObserver {
 
 /// A channel between AUVs that also contains the model's stations and the transponders of targets
 /// that AUVs ping (sensing.ranging). Callers see only the AUVs of this network. Stations receive,
-/// move and send at each decision by themselves, and modems ping by themselves. If bodies() is more
-/// than nodes(), Step takes the motion of the targets after that of the AUVs. Without stations and
-/// pings it is the scenario's channel.
+/// move and send at each decision by themselves, and modems ping by themselves. The modems of AUVs
+/// measure directions if the model says so. If bodies() is more than nodes(), Step takes the motion
+/// of the targets after that of the AUVs. Without stations, pings and directions it is the
+/// scenario's channel.
 /// @param sensing true sensing @param observer of the stations, or null; must outlive the channel
 std::unique_ptr<acoustics::Channel> MakeStationChannel(const AgentModel& model,
                                                        const acoustics::ChannelConfig& channel,

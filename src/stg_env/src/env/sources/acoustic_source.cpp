@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "auv_common/numbers/attitude.hpp"
 #include "stg_agent/stations/station_channel.hpp"
 
 namespace stg::env {
@@ -26,6 +27,7 @@ AcousticSource::AcousticSource(const agent::AgentModel& model,
   received_.reserve(8 * n);
   positions_.resize(static_cast<std::size_t>(channels_.front()->bodies()));
   velocities_.resize(positions_.size());
+  attitudes_.resize(n);
 }
 
 void AcousticSource::Start(const dynamics::World& world, const LaneSet& lanes) {
@@ -100,6 +102,14 @@ void AcousticSource::Send(const dynamics::World& world) {
       const auto u = static_cast<std::size_t>(count_ + k);
       positions_[u] = Lane(world.target(k).p_WT, lane);
       velocities_[u] = Lane(world.target(k).v_WT, lane);
+    }
+    if (channel.measures_directions()) {
+      for (int i = 0; i < count_; ++i) {
+        double q_WB[4];
+        for (int k = 0; k < 4; ++k) q_WB[k] = Lane(world.vehicle(i).q_WB[k], lane);
+        attitudes_[static_cast<std::size_t>(i)] = RotationOf(q_WB);
+      }
+      channel.SetAttitudes(attitudes_);
     }
     const auto decision = world.step(lane) / decision_steps_;
     channel.Step(now, decision, positions_, velocities_, offered_);

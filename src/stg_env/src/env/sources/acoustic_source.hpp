@@ -56,6 +56,7 @@ class AcousticSource : public InformationSource {
   std::vector<acoustics::Transmission> offered_;
   std::vector<acoustics::Reception> received_;
   std::vector<Vec3<double>> positions_, velocities_;
+  std::vector<Mat3<double>> attitudes_;  // [agent]
 };
 
 }  // namespace stg::env

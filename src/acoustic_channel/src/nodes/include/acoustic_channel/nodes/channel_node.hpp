@@ -79,6 +79,7 @@ class ChannelNode {
   double packets_sent_s_ = 0.0;  ///< wall time
   std::vector<Auv> auvs_;
   std::vector<Vec3<double>> positions_, velocities_;
+  std::vector<Mat3<double>> attitudes_;  // [AUVs]
   std::vector<acoustics::Transmission> offered_;
   std::vector<acoustics::Reception> received_;
   auv_msgs::AcousticReception reception_message_;

@@ -24,6 +24,9 @@ inline void SetReceivedPacket(const acoustics::Reception& r, TimeNs start,
   m->noise_level_db = r.noise_level_db;
   m->sinr_db = r.sinr_db;
   m->doppler_mps = r.doppler_mps;
+  m->has_direction = static_cast<std::uint8_t>(r.has_direction);
+  m->azimuth = r.azimuth_rad;
+  m->elevation = r.elevation_rad;
   m->data.assign(r.payload.data, r.payload.data + r.payload.size);
 }
 
@@ -46,6 +49,9 @@ inline acoustics::Reception ReceptionOf(const auv_msgs::ReceivedPacket& m, int r
   r.noise_level_db = m.noise_level_db;
   r.sinr_db = m.sinr_db;
   r.doppler_mps = m.doppler_mps;
+  r.has_direction = m.has_direction != 0;
+  r.azimuth_rad = m.azimuth;
+  r.elevation_rad = m.elevation;
   r.payload = acoustics::ViewOf(m.data);
   return r;
 }

@@ -53,12 +53,18 @@ inline bool FiniteTwist(const Twist& m) {
   return FiniteVector(m.linear) && FiniteVector(m.angular);
 }
 
+/// Attitude of a body in the world.
+template <class Pose>
+inline Mat3<double> AttitudeOf(const Pose& pose) {
+  const double q[4] = {pose.orientation.w, pose.orientation.x, pose.orientation.y,
+                       pose.orientation.z};
+  return RotationOf(q);
+}
+
 /// Velocity in the world of a body. The twist is in body axes (REP 103).
 template <class Pose, class Twist>
 inline Vec3<double> WorldVelocity(const Pose& pose, const Twist& twist) {
-  const double q[4] = {pose.orientation.w, pose.orientation.x, pose.orientation.y,
-                       pose.orientation.z};
-  return RotationOf(q) * VectorOf(twist.linear);
+  return AttitudeOf(pose) * VectorOf(twist.linear);
 }
 
 }  // namespace stg::nodes
