@@ -1,27 +1,37 @@
 #!/usr/bin/python3
 """No message can kill, blind or silence a node: mutations of every message on every topic."""
 
+import contextlib
 import io
 import json
 import pathlib
 import random
 import re
+import socket
 import struct
 import unittest
+import urllib.parse
 
 import rosgraph
 import roslib.message
+import rosservice
 import rospy
 import rostest
 from auv_msgs.msg import AcousticReception, EpisodeSummary, StepReport, SwarmState, TaskState
+from auv_msgs.srv import LoadPolicyResponse
 from graph_listener import Diagnostics, Latest, rosnode_pid, wait_for
 from mutations import mutated, stamped
+from roscpp.srv import GetLoggers
 from std_msgs.msg import Header
+from stg_common.loading import load_program
 
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+CALLS = load_program(ROOT / "scripts" / "bench" / "service_calls.py")
 MUTATIONS = 60  # of each topic
 FLOOD = 300_000  # messages
 FAR_FUTURE = (2.0**31 + 2.0, 2.0**32 - 0.05)  # [s]
 NOT_OURS = ("/rosout", "/mutations_test", "/recorder")
+KINDS = ("world", "acoustic_channel", "metrics", "auv_0/agent", "auv_0/controller")  # a node of each
 
 
 def changed_bytes(message_type, change):
@@ -203,6 +213,35 @@ class Mutations(unittest.TestCase):
         self.check_all_is_well()
         self.assertLess(grown, 70 * 1024, "the metrics keep what they cannot handle yet")
 
+    def test_9_nobody_dies_of_questions_about_loggers_or_of_peers_that_claim_memory(self):
+        for node in KINDS:
+            # rosconsole's own answer would end a node at the next one, or at its next message.
+            for _ in range(3):
+                loggers = rospy.ServiceProxy(f"/{node}/get_loggers", GetLoggers)().loggers
+                self.assertIn("ros", [logger.name for logger in loggers])
+            address = urllib.parse.urlparse(rosservice.get_service_uri(f"/{node}/get_loggers"))
+            with contextlib.ExitStack() as peers:
+                # The header of a connection, of 900 MB; a node may use 2 GiB.
+                for _ in range(4):
+                    peer = socket.create_connection((address.hostname, address.port), 20.0)
+                    peers.enter_context(peer).sendall(struct.pack("<I", 900_000_000) + b"x")
+                    rospy.rostime.wallsleep(0.1)
+                rospy.ServiceProxy(f"/{node}/get_loggers", GetLoggers)()
+        self.check_all_is_well()
+
+    def test_10_a_path_that_is_no_text_is_refused_and_not_repeated(self):
+        master = rosgraph.Master("/mutations_test")
+        (service,) = [s for s in CALLS.services_of(master) if s.name == "/auv_0/agent/load_policy"]
+        connection = CALLS.Connection(service)
+        self.addCleanup(connection.close)
+        for path in (b"pursu\xff", b"idle\x00", b"a\x1b[2Jb.onnx"):
+            taken, data = connection.call(struct.pack("<I", len(path)) + path)
+            answer = LoadPolicyResponse().deserialize(data)
+            self.assertTrue(taken)
+            self.assertFalse(answer.success)
+            self.assertEqual(answer.message, "policy: must be UTF-8 without control characters")
+            self.assertEqual(answer.policy_id, "pursuit_separated")
+
     def resident_kb(self, node):
         """Returns the resident memory of a node."""
         status = pathlib.Path(f"/proc/{self.pids[node]}/status").read_text(encoding="utf-8")
@@ -210,12 +249,11 @@ class Mutations(unittest.TestCase):
 
     def refusals(self):
         """Returns how many messages each node says it has refused."""
-        names = ["world", "acoustic_channel", "metrics", "auv_0/agent", "auv_0/controller"]
-        wait_for(lambda: all(name in self.diagnostics.nodes for name in names), 20.0, "diagnostics")
+        wait_for(lambda: all(name in self.diagnostics.nodes for name in KINDS), 20.0, "diagnostics")
         return {
             name: sum(float(value) for key, value in self.diagnostics.nodes[name][2].items()
                       if "refused" in key)
-            for name in names
+            for name in KINDS
         }
 
 

@@ -1,5 +1,6 @@
 """Shared by the tests of the channel alone: a clock, vehicles that use it, and waiting."""
 
+import contextlib
 import threading
 import time
 
@@ -75,12 +76,13 @@ class Vehicle:
 
 
 class World:
-    """Publishes /clock and the odometry of all vehicles, ten times in a second of its own time."""
+    """Publishes /clock and the odometry of all vehicles, ten times in a second of its own time. `pause_s` is
+    the wall time between two of them."""
 
     PERIOD_NS = 100_000_000
 
-    def __init__(self, vehicles, start_s=1000.0):
-        self.vehicles = vehicles
+    def __init__(self, vehicles, start_s=1000.0, pause_s=0.02):
+        self.vehicles, self._pause_s = vehicles, pause_s
         self._clock = rospy.Publisher("/clock", Clock, queue_size=100)
         self._now = rospy.Time.from_sec(start_s)
         self._lock = threading.Lock()
@@ -88,14 +90,15 @@ class World:
         threading.Thread(target=self._run, daemon=True).start()
 
     def _run(self):
-        while not rospy.is_shutdown():
-            with self._lock:
-                self._now += rospy.Duration(0, self.PERIOD_NS)
-                self._clock.publish(self._now)
-                for vehicle in self.vehicles:
-                    if not vehicle.silent:
-                        vehicle.odom.publish(vehicle.odometry(self._now))
-            time.sleep(0.02)
+        with contextlib.suppress(rospy.ROSException):  # the topics are closed at the end
+            while not rospy.is_shutdown():
+                with self._lock:
+                    self._now += rospy.Duration(0, self.PERIOD_NS)
+                    self._clock.publish(self._now)
+                    for vehicle in self.vehicles:
+                        if not vehicle.silent:
+                            vehicle.odom.publish(vehicle.odometry(self._now))
+                time.sleep(self._pause_s)
 
     def now(self):
         """Returns the time that was published last."""

@@ -1,5 +1,6 @@
 #include "auv_common/nodes/memory_limit.hpp"
 
+#include <malloc.h>
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -16,5 +17,7 @@ void LimitMemory(std::size_t bytes) {
   setrlimit(RLIMIT_DATA, &limit);
 #endif
 }
+
+void ReturnFreeMemory() { malloc_trim(0); }
 
 }  // namespace stg::nodes

@@ -10,6 +10,7 @@
 #include "auv_common/config/files.hpp"
 #include "auv_common/config/loader.hpp"
 #include "auv_common/error.hpp"
+#include "auv_common/names.hpp"
 
 namespace stg::nodes {
 
@@ -62,6 +63,8 @@ std::string WhereItFits(const agent::Policy& policy) {
 }  // namespace
 
 agent::Decider DeciderFor(const std::string& name, const agent::AgentModel& model, int id) {
+  // Answers and logs repeat the name.
+  if (!IsText(name)) throw UserError("policy: must be UTF-8 without control characters");
   agent::Decider decider = agent::ReadDecider(Resolve(name, model, id), id, id + 1);
   for (const auto& policy : decider.policies) {
     try {
