@@ -93,6 +93,17 @@ void JointFilter::Update(const double* column, double gain, double less) {
   }
 }
 
+bool JointFilter::Passes(double innovation, double S) {
+  nis_ = innovation * innovation / S;
+  return nis_ <= Squared(config_.gate_sigma);
+}
+
+bool JointFilter::Apply(const double* column, double innovation, double S) {
+  if (!Passes(innovation, S)) return false;
+  Update(column, innovation / S, 1.0 / S);
+  return true;
+}
+
 bool JointFilter::Take(const BearingReading& z) { return TakeAzimuth(z, -1); }
 
 bool JointFilter::Take(const DirectionReading& z) {
@@ -137,10 +148,7 @@ bool JointFilter::TakeAzimuth(const BearingReading& z, int heading) {
   const double S = sidewise + noise;
   const double turned = heading < 0 ? 0.0 : x_[static_cast<std::size_t>(heading)];
   const double innovation = WrapAngle(z.azimuth_rad - turned - std::atan2(offset[1], offset[0]));
-  nis_ = innovation * innovation / S;
-  if (nis_ > Squared(config_.gate_sigma)) return false;
-  Update(column.data(), innovation / S, 1.0 / S);
-  return true;
+  return Apply(column.data(), innovation, S);
 }
 
 /// With both depths, the elevation is a measurement of the horizontal distance.
@@ -169,10 +177,7 @@ bool JointFilter::TakeElevation(const DirectionReading& z) {
                        0.5 * (curved * curved + steeper * steeper);
   const double S = variance + noise;
   const double innovation = z.elevation_rad - std::atan2(up, level) - 0.5 * (curved + steeper);
-  nis_ = innovation * innovation / S;
-  if (nis_ > Squared(config_.gate_sigma)) return false;
-  Update(column.data(), innovation / S, 1.0 / S);
-  return true;
+  return Apply(column.data(), innovation, S);
 }
 
 bool JointFilter::Take(const RangeReading& z) {
@@ -206,8 +211,7 @@ bool JointFilter::Take(const RangeReading& z) {
   const double S = Column(row, column.data()) + noise;
   const double expected = (1.0 + x_[static_cast<std::size_t>(ScaleAt())]) * range + Mean(ahead);
   const double innovation = z.range_m - expected - 0.5 * curved;
-  nis_ = innovation * innovation / S;
-  if (nis_ > Squared(config_.gate_sigma)) return false;
+  if (!Passes(innovation, S)) return false;
   // A late sound makes a range longer, by any value up to late_max_m.
   const double first =
       (1.0 - config_.late_share) * std::exp(-0.5 * nis_) / std::sqrt(2.0 * kPi * S);

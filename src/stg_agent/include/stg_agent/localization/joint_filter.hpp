@@ -179,6 +179,12 @@ class JointFilter {
   double Wander(double age_s) const;
   /// Density of the innovation of a late sound [1/m].
   double LateDensity(double innovation, double std_m) const;
+  /// Keeps the normalised innovation squared of a reading. Returns whether it is in the gate.
+  /// @param innovation measured minus expected
+  /// @param S variance of the innovation
+  bool Passes(double innovation, double S);
+  /// Updates with a reading that passes the gate. Returns whether it passes.
+  bool Apply(const double* column, double innovation, double S);
   /// x += gain * column, P -= less * column column^T.
   void Update(const double* column, double gain, double less);
 
