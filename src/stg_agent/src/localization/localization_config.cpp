@@ -45,10 +45,11 @@ void DescribeRanges(LocalizationConfig* c, config::Table* t) {
                  "use of the modems' clocks by travel times. known: they are taken to be right; "
                  "estimated: the localizer estimates the offset and the rate of the clock of each "
                  "AUV and beacon, which it takes to be as good as the modems' keys state");
-  t->AddOptional("usbl_std_deg", &c->usbl_std_deg, "0.0", config::Within(0.0, 30.0), "deg",
-                 "standard deviation, in each direction across the line of sight, of the direction "
-                 "of a received packet that an AUV measures with an ultra-short baseline; the "
-                 "heading of its navigation adds its own error; 0: AUVs measure no directions");
+  t->AddOptional(
+      "usbl_std_deg", &c->usbl_std_deg, "0.0", config::Within(0.0, 30.0), "deg",
+      "standard deviation, in each direction across the line of sight, of the direction "
+      "of a received packet or answer that an AUV measures with an ultra-short baseline; the "
+      "heading of its navigation adds its own error; 0: AUVs measure no directions");
   t->AddOptional(
       "surface_std_m", &c->surface_std_m, "0.0", NonNegative(1e6), "m, world ENU",
       "an AUV surfaces for a GPS fix before the standard deviation of its own position is "

@@ -22,7 +22,8 @@ class PingRanges {
 
   void Clear() { waiting_.clear(); }
   /// Takes an answer to an own ping; an implausible one is dropped.
-  void AddOwn(const acoustics::Reception& answer) {
+  /// @param from the direction of the answer; null: it was not measured
+  void AddOwn(const acoustics::Reception& answer, const DirectionReading* from) {
     const double way_s = answer.travel_time_s;
     if (!std::isfinite(way_s) || way_s <= 0.0 || waiting_.size() == kMost) return;
     Waiting w;
@@ -30,14 +31,19 @@ class PingRanges {
     w.z.source = answer.source;
     w.z.at = answer.generation;
     w.travel_time_s = way_s;
+    w.has_direction = from != nullptr;
+    if (from != nullptr) w.from = *from;
     waiting_.push_back(w);
   }
   /// Takes a range from another member's packet.
   void AddTold(const RangeReading& z) {
-    if (waiting_.size() < kMost) waiting_.push_back({z, 0.0, false});
+    if (waiting_.size() == kMost) return;
+    waiting_.emplace_back();
+    waiting_.back().z = z;
   }
 
-  /// Calls take(const RangeReading&) for each complete range, and drops ranges older than `oldest`.
+  /// Calls take(const RangeReading&, const DirectionReading*) for each complete range, with the
+  /// direction or null, and drops ranges older than `oldest`.
   /// @param ways of all members
   template <class Take>
   void Give(TimeNs oldest, const OwnWay& own, const std::vector<ToldWay>& ways,
@@ -60,7 +66,11 @@ class PingRanges {
           z.range_m =
               w.travel_time_s / SlownessBetween(sound, surface_z_m, z.p_receiver, z.p_source);
         }
-        take(z);
+        w.from.source = z.source;
+        w.from.at = z.at;
+        w.from.p_receiver = z.p_receiver;
+        w.from.p_source = z.p_source;
+        take(z, w.has_direction ? &w.from : nullptr);
       } else if (z.at >= oldest) {
         waiting_[kept++] = w;
       }
@@ -74,6 +84,8 @@ class PingRanges {
     RangeReading z;
     double travel_time_s = 0.0;  ///< of an own ping
     bool placed = false;         ///< the own position is in z
+    bool has_direction = false;
+    DirectionReading from;  ///< its direction is known, its positions are those of z
   };
 
   int self_;

@@ -97,8 +97,7 @@ class RangeLocalizer : public Localizer {
     letter.bearing = packet.bearing;
     letter.has_fix = packet.has_fix;
     letter.fix = packet.fix;
-    letter.has_direction = direction_std_rad_ > 0.0 && self_ < auvs_ && reception.has_direction &&
-                           std::isfinite(reception.azimuth_rad + reception.elevation_rad);
+    letter.has_direction = HasDirection(reception);
     letter.azimuth_rad = reception.azimuth_rad;
     letter.elevation_rad = reception.elevation_rad;
     letter.arrival = reception.arrival;
@@ -108,7 +107,9 @@ class RangeLocalizer : public Localizer {
   void HearAnswer(const acoustics::Reception& r) override {
     const int members = static_cast<int>(ways_.size());
     if (!pings_ || r.source < 0 || r.source >= members || r.source == self_) return;
-    by_ping_.AddOwn(r);
+    DirectionReading from;
+    const bool known = HasDirection(r) && Face(r.arrival, r.azimuth_rad, r.elevation_rad, &from);
+    by_ping_.AddOwn(r, known ? &from : nullptr);
   }
 
   void Advance(TimeNs now, const OwnReckoning& own) override {
@@ -130,9 +131,10 @@ class RangeLocalizer : public Localizer {
     for (const Letter& letter : pending_) Read(now, letter);
     pending_.clear();
     by_ping_.Give(now - kOldest, own_way_, ways_, sound_, surface_z_m_,
-                  [this, now](const RangeReading& z) {
+                  [this, now](const RangeReading& z, const DirectionReading* from) {
                     if (z.receiver == self_) measured_.Add({z.source, z.at, z.range_m});
                     Take(now, z);
+                    if (from != nullptr) Take(now, *from);
                   });
   }
 
@@ -272,24 +274,35 @@ class RangeLocalizer : public Localizer {
     filter_.Take(z);
   }
 
-  /// Uses the direction from which the own modem received a packet. It is in body axes.
+  bool HasDirection(const acoustics::Reception& r) const {
+    return direction_std_rad_ > 0.0 && self_ < auvs_ && r.has_direction &&
+           std::isfinite(r.azimuth_rad + r.elevation_rad);
+  }
+
+  /// Turns a direction in body axes, from which the own modem received something, into the frame of
+  /// the reckoning. False: the attitude at the arrival is not known.
+  bool Face(TimeNs arrival, double azimuth_rad, double elevation_rad, DirectionReading* z) const {
+    Mat3<double> R_WB;
+    if (!own_way_.Attitude(arrival, &R_WB)) return false;
+    const double c = std::cos(elevation_rad);
+    const Vec3<double> line =
+        R_WB *
+        Vec3<double>{c * std::cos(azimuth_rad), c * std::sin(azimuth_rad), std::sin(elevation_rad)};
+    z->azimuth_rad = std::atan2(line.y, line.x);
+    z->elevation_rad = std::atan2(line.z, std::hypot(line.x, line.y));
+    z->std_rad = direction_std_rad_;
+    return true;
+  }
+
+  /// Uses the direction from which the own modem received a packet.
   void ReadDirection(TimeNs now, const Letter& letter) {
     DirectionReading z;
-    Mat3<double> R_WB;
-    if (!Way(letter.id).AtPacket(letter.way.transmit, 0, &z.at, &z.p_source) ||
-        !own_way_.At(z.at, &z.p_receiver) || !own_way_.Attitude(letter.arrival, &R_WB)) {
-      return;
-    }
-    if (now - z.at > kOldest || !filter_.knows(letter.id)) return;
-    const double c = std::cos(letter.elevation_rad);
-    const Vec3<double> line =
-        R_WB * Vec3<double>{c * std::cos(letter.azimuth_rad), c * std::sin(letter.azimuth_rad),
-                            std::sin(letter.elevation_rad)};
     z.source = letter.id;
-    z.azimuth_rad = std::atan2(line.y, line.x);
-    z.elevation_rad = std::atan2(line.z, std::hypot(line.x, line.y));
-    z.std_rad = direction_std_rad_;
-    filter_.Take(z);
+    if (Way(letter.id).AtPacket(letter.way.transmit, 0, &z.at, &z.p_source) &&
+        own_way_.At(z.at, &z.p_receiver) &&
+        Face(letter.arrival, letter.azimuth_rad, letter.elevation_rad, &z)) {
+      Take(now, z);
+    }
   }
 
   /// The own packets are not received, but their times are known to within the age's resolution.
@@ -309,6 +322,10 @@ class RangeLocalizer : public Localizer {
     }
     taken_[next_taken_++ % taken_.size()] = {z.receiver, z.source, z.at};
     filter_.Take(z);
+  }
+
+  void Take(TimeNs now, const DirectionReading& z) {
+    if (now - z.at <= kOldest && filter_.knows(z.source)) filter_.Take(z);
   }
 
   int auvs_, self_;

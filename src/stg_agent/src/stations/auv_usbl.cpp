@@ -23,13 +23,17 @@ void AuvUsbl::Measure(int receiver, TimeNs t, const std::vector<Vec3<double>>& p
   const auto i = static_cast<std::size_t>(receiver);
   for (std::size_t k = first; k < out->size(); ++k) {
     acoustics::Reception& r = (*out)[k];
+    if (r.source >= members_) continue;  // a target
+    const bool answer = r.payload.size == 0;
+    const TimeNs at = answer ? r.generation : r.transmit;
     const auto j = static_cast<std::size_t>(r.source);
-    const Vec3<double> way = p_W[j] - p_W[i] - (v_W[j] - v_W[i]) * Seconds(t - r.transmit);
+    const Vec3<double> way = p_W[j] - p_W[i] - (v_W[j] - v_W[i]) * Seconds(t - at);
     const Vec3<double> r_B = R_WB_[i].TransposeTimes(way);
     const double level = std::hypot(r_B.x, r_B.y), range = std::hypot(level, r_B.z);
     if (level < 1e-6) continue;  // straight above or below there is no azimuth
-    Random random(seed_, Stream::kBearing, episode_, r.sequence,
-                  static_cast<std::uint32_t>(r.source * members_ + receiver));
+    // A ping may have the number of a packet, so that answers have links of their own.
+    const int link = r.source * members_ + receiver + (answer ? members_ * members_ : 0);
+    Random random(seed_, Stream::kBearing, episode_, r.sequence, static_cast<std::uint32_t>(link));
     const double port = std_rad_ * random.Normal(), up = std_rad_ * random.Normal();
     const double c = level / range, s = r_B.z / range;
     // In axes along, to port of, and above the line of sight, the measured one is (1, port, up).

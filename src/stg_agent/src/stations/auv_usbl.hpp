@@ -10,8 +10,9 @@
 namespace stg::agent {
 
 /// The ultra-short baselines of the AUVs' modems (localization.ranges.usbl_std_deg): the direction
-/// of the sender of each received packet, in body axes. As in the channel's ranges, both positions
-/// are those at transmission. The attitude is that at the last decision before the arrival. The
+/// of the sender of each received packet, and of the members that answer pings, in body axes. As in
+/// the channel's ranges, both positions are those at transmission, of an answer those in the middle
+/// of its round trip. The attitude is that at the last decision before the arrival. The
 /// error has the same standard deviation in each direction across the line of sight. So it does not
 /// depend on the axes, and the azimuth of a sender far above or below has a larger error.
 ///

@@ -150,10 +150,10 @@ class StationChannel : public Channel {
   void Deliver(int receiver, TimeNs until, std::vector<acoustics::Reception>* out) override {
     const std::size_t before = out->size();
     water_->Deliver(receiver, until, out);
+    if (pings_ != nullptr) pings_->Take(receiver, until, before, out);
     if (usbl_ != nullptr) {
       usbl_->Measure(receiver, now_, positions_, velocities_, before, out);
     }
-    if (pings_ != nullptr) pings_->Take(receiver, until, before, out);
   }
   acoustics::LinkStatistics Link(int source, int destination, TimeNs now) const override {
     return water_->Link(source, destination, now);

@@ -264,6 +264,52 @@ TEST(RangeLocalizer, APacketTellsOfAStationAndOfAnAuv) {
   EXPECT_NEAR(packet.ranges[0].range_m, Norm(flight.True(4, then) - flight.True(0, then)), 0.1);
 }
 
+/// Answer of the craft, member 2, to a ping of AUV 0. The AUV is level and points to the east.
+acoustics::Reception Answer(const Flight& flight, int t, bool has_direction) {
+  const double then = t - 0.5;
+  const Vec3<double> way = flight.True(2, then) - flight.True(0, then);
+  acoustics::Reception r;
+  r.source = 2;
+  r.generation = (t - 1) * kSecond + kSecond / 2;
+  r.transmit = r.generation - kSecond / 5;
+  r.arrival = r.generation + kSecond / 5;
+  r.travel_time_s = Norm(way) / kSound_mps;
+  r.has_direction = has_direction;
+  r.azimuth_rad = std::atan2(way.y, way.x);
+  r.elevation_rad = std::atan2(way.z, std::hypot(way.x, way.y));
+  return r;
+}
+
+// A range and a direction are a full fix: ranges to one craft, in twenty seconds, tell little
+// across the line of sight.
+TEST(RangeLocalizer, TheDirectionOfAnAnswerTellsWhatItsRangeDoesNot) {
+  AgentModel model = Model(2, true);
+  model.localization.by = RangesBy::kPing;
+  model.localization.usbl_std_deg = 1.0;
+  const Flight flight(model);
+  double across[2] = {};
+  for (const bool has_direction : {false, true}) {
+    const auto localizer = MakeLocalizer(model, 0);
+    localizer->Reset();
+    for (int t = 0; t <= 300; ++t) {
+      std::vector<Letter> letters;
+      if (t > 0) letters.push_back(flight.At(t));
+      if (t > 280) localizer->HearAnswer(Answer(flight, t, has_direction));
+      Advance(flight, t, letters, localizer.get());
+    }
+    const PlaneError e = localizer->own();
+    const Vec3<double> way = flight.True(2, 300.0) - flight.True(0, 300.0);
+    const double range = std::hypot(way.x, way.y), x = -way.y / range, y = way.x / range;
+    across[has_direction] = std::sqrt(x * x * e.xx + 2.0 * x * y * e.xy + y * y * e.yy);
+    if (!has_direction) continue;
+    EXPECT_NEAR(e.x * x + e.y * y, -0.3 * 300.0 * x + 0.1 * 300.0 * y, 3.0 * across[1]);
+    // Twenty directions with an error of 1 deg and one common heading.
+    EXPECT_GT(across[1], 0.5 * range * 1.0 * kPi / 180.0 / std::sqrt(20.0));
+    EXPECT_LT(across[1], 0.02 * range);
+  }
+  EXPECT_GT(across[0], 3.0 * across[1]);
+}
+
 TEST(RangeLocalizer, IsNotThereByDefault) {
   AgentScenario s;
   EXPECT_EQ(MakeLocalizer(s.model(), 0), nullptr);

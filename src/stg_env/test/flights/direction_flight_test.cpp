@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <string>
 #include <vector>
 
 #include "auv_common/error.hpp"
@@ -23,9 +24,9 @@ constexpr TimeNs kStep = 1'000'000'000;
 /// Two AUVs that move without turning, and one beacon.
 class Directions : public ::testing::Test {
  protected:
-  void Make(double usbl_std_deg) {
+  void Make(double usbl_std_deg, const std::string& by = "one_way") {
     scenario_ = Shipped("deep", "usbl_auvs",
-                        {"agents=2", "stations.survey_std_m=1e-9",
+                        {"agents=2", "stations.survey_std_m=1e-9", "localization.ranges.by=" + by,
                          "localization.ranges.usbl_std_deg=" + std::to_string(usbl_std_deg)});
     channel_ = agent::MakeStationChannel(scenario_.model(), scenario_.channel,
                                          scenario_.world.sensing, {});
@@ -66,22 +67,28 @@ class Directions : public ::testing::Test {
   Mat3<double> R_WB_ = RotationOf(TrigOf(Vec3<double>{0.1, -0.2, 2.0}));
 };
 
-// Turned back into the world, each direction is that between both places at transmission.
+// Turned back into the world, each direction is that between both places at transmission; of an
+// answer to a ping, between both in the middle of the round trip.
 TEST_F(Directions, AreInBodyAxes) {
-  Make(1e-5);
-  ASSERT_TRUE(channel_->measures_directions());
-  int of_beacon = 0;
-  for (const Reception& r : Run(60.0)) {
-    ASSERT_TRUE(r.has_direction);
-    const double c = std::cos(r.elevation_rad), t = Seconds(r.transmit);
-    const Vec3<double> line =
-        R_WB_ * Vec3<double>{c * std::cos(r.azimuth_rad), c * std::sin(r.azimuth_rad),
-                             std::sin(r.elevation_rad)};
-    const Vec3<double> way = At(r.source, t) - At(0, t);
-    EXPECT_NEAR(Norm(line - way * (1.0 / Norm(way))), 0.0, 1e-6);
-    of_beacon += r.source == 2 ? 1 : 0;
+  for (const char* by : {"one_way", "ping"}) {
+    Make(1e-5, by);
+    ASSERT_TRUE(channel_->measures_directions());
+    int of_beacon = 0, of_answers = 0;
+    for (const Reception& r : Run(240.0)) {
+      ASSERT_TRUE(r.has_direction);
+      const bool answer = r.payload.size == 0;
+      const double c = std::cos(r.elevation_rad), t = Seconds(answer ? r.generation : r.transmit);
+      const Vec3<double> line =
+          R_WB_ * Vec3<double>{c * std::cos(r.azimuth_rad), c * std::sin(r.azimuth_rad),
+                               std::sin(r.elevation_rad)};
+      const Vec3<double> way = At(r.source, t) - At(0, t);
+      EXPECT_NEAR(Norm(line - way * (1.0 / Norm(way))), 0.0, 1e-6);
+      of_beacon += r.source == 2 ? 1 : 0;
+      of_answers += answer ? 1 : 0;
+    }
+    EXPECT_GT(of_beacon, 3);
+    EXPECT_EQ(of_answers > 3, std::string(by) == "ping");
   }
-  EXPECT_GT(of_beacon, 3);
 }
 
 // The deviation is that of the key, in both directions across the line of sight: the azimuth of a
