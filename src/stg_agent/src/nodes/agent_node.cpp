@@ -14,6 +14,7 @@
 #include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
 #include "run_model.hpp"
+#include "stg_agent/nodes/entity_messages.hpp"
 #include "stg_agent/nodes/topics.hpp"
 
 namespace stg::nodes {
@@ -77,6 +78,8 @@ void AgentNode::Advertise() {
                   [this](auto* message) { return SetTask(message); });
   step_.Advertise(own(topics::kAgentStep), kQueue,
                   [this](auto* message) { return SetStep(message); });
+  entity_step_.Advertise(own(topics::kEntityStep), kQueue,
+                         [this](auto* message) { return SetEntityStep(message); });
 }
 
 void AgentNode::Spin() {
@@ -241,8 +244,12 @@ void AgentNode::Decide() {
     nav.fix_std_m = frame_->fix_std;
   }
   agent_.Observe(nav, observation_.data());
+  const bool draws = explore_ && decider_.entities != nullptr;
+  drew_ = false;
   if (decider_.observes()) {
     decider_.Act(id_, observation_.data(), action_);
+  } else if (draws) {
+    drew_ = decider_.Explore(frame_->seed, frame_->step, agent_.view(), &drawn_, action_);
   } else {
     decider_.Act(agent_.view(), action_);
   }
@@ -286,6 +293,7 @@ void AgentNode::ReportDecision() {
   unreported_ = false;
   task_.Publish();
   step_.Publish();
+  if (drew_) entity_step_.Publish();
 }
 
 bool AgentNode::SetVelocity(geometry_msgs::TwistStamped* message) const {
@@ -319,6 +327,18 @@ bool AgentNode::SetStep(auv_msgs::AgentStep* message) const {
   message->log_probability = log_probability_;
   message->policy_id = policy_id_;
   message->observation_layout = agent::kLayoutVersion;
+  return true;
+}
+
+bool AgentNode::SetEntityStep(auv_msgs::EntityStep* message) const {
+  if (!drew_ || unreported_) return false;
+  message->header.stamp = decided_->header.stamp;
+  message->header.frame_id = body_frame_;
+  message->episode = decided_->episode;
+  message->step = decided_->step;
+  message->agent = static_cast<std::uint32_t>(id_);
+  message->policy_id = policy_id_;
+  SetDecision(drawn_, agent::CommandSize(decider_.entities->action()), message);
   return true;
 }
 

@@ -190,7 +190,7 @@ void SwarmLearner::Gradient(const std::vector<SwarmRollout>& rollouts, const std
 
 SwarmLearner::Report SwarmLearner::Update(std::vector<SwarmRollout>* rollouts,
                                           std::uint32_t collection, double progress,
-                                          WorkerPool* pool) {
+                                          WorkerPool* pool, Learns learns) {
   std::vector<Part> scratch;
   for (int w = 0; w < pool->workers(); ++w) scratch.push_back(parts_.front());
   pool->Run(static_cast<int>(rollouts->size()), [&](int k, int worker) {
@@ -259,7 +259,9 @@ SwarmLearner::Report SwarmLearner::Update(std::vector<SwarmRollout>* rollouts,
                    gradient->data(), numbers->data());
         return length;
       };
-      norm += step(&parts_[0].actor_gradient, &actor_numbers_, &actor_adam_);
+      if (learns == Learns::kBoth) {
+        norm += step(&parts_[0].actor_gradient, &actor_numbers_, &actor_adam_);
+      }
       step(&parts_[0].critic_gradient, &critic_numbers_, &critic_adam_);
       for (auto s = actor_numbers_.end() - size_; s != actor_numbers_.end(); ++s) {
         *s = std::clamp(*s, static_cast<float>(config_.least_log_std),
@@ -305,6 +307,20 @@ void SwarmLearner::Save(Archive* archive) const {
   actor_adam_.Save("actor_adam", archive);
   critic_adam_.Save("critic_adam", archive);
   archive->Put("returns", std::vector<double>{mean_, square_, seen_, std_});
+}
+
+void SwarmLearner::StartFrom(const agent::EntityPolicy& policy) {
+  const agent::EntityPolicy::Parameters& p = policy.parameters();
+  if (p.network != config_.network || p.action != config_.action) {
+    throw UserError("policy '" + p.metadata.id + "': has the network '" +
+                    agent::EntityNetworkName(p.network) + "' and the action '" +
+                    agent::EntityActionName(p.action) + "', not '" +
+                    agent::EntityNetworkName(config_.network) + "' and '" +
+                    agent::EntityActionName(config_.action) + "'");
+  }
+  std::copy(p.numbers.begin(), p.numbers.end(), actor_numbers_.begin());
+  std::copy(p.log_std.begin(), p.log_std.end(), actor_numbers_.end() - size_);
+  KeepBlind(&actor_numbers_);
 }
 
 void SwarmLearner::SetDeviation(double log_std) {

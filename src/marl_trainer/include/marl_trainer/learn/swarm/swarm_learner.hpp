@@ -25,13 +25,17 @@ class SwarmLearner {
   /// Learns from one collection. @param progress done share of the training, in [0, 1]
   /// Returns its results, by name.
   using Report = std::vector<std::pair<std::string, double>>;
+  enum class Learns { kBoth, kCritic };  ///< kCritic: the actor stays as it is
   Report Update(std::vector<SwarmRollout>* rollouts, std::uint32_t collection, double progress,
-                WorkerPool* pool);
+                WorkerPool* pool, Learns learns = Learns::kBoth);
 
   agent::EntityPolicy Policy(const agent::PolicyMetadata& metadata) const;
   void Save(Archive* archive) const;
   /// Throws UserError for an archive with other sizes.
   void Load(const Archive& archive);
+  /// Takes the actor and its exploration from a policy with the same network and action. The critic
+  /// stays untrained.
+  void StartFrom(const agent::EntityPolicy& policy);
   /// Sets the log standard deviation of the exploration.
   void SetDeviation(double log_std);
 
