@@ -31,14 +31,14 @@ namespace {
 constexpr double kTolerance = 1e-5;
 
 /// What a run published: commands by episode, step and AUV; summaries of complete episodes.
-struct Run {
+struct Heard {
   std::map<std::tuple<std::uint32_t, std::uint32_t, int>, auv_msgs::EntityStep> commands;
   std::map<std::uint32_t, auv_msgs::EpisodeSummary> summaries;
 };
 
 /// Listens until the trainer has written a policy with an update, and for a second after that.
-Run Listen(int agents, const std::string& policy_file) {
-  Run run;
+Heard Listen(int agents, const std::string& policy_file) {
+  Heard run;
   ros::NodeHandle node;
   std::vector<ros::Subscriber> subscribers;
   for (int i = 0; i < agents; ++i) {
@@ -92,7 +92,7 @@ TEST(TrainField, RecordsAndLearnsWhatTheEnvironmentDoes) {
   const std::string file = TextParameter("out", "") + "/policy_last.onnx";
   learn::SwarmConfig config = learn::RecordedSwarmConfig();
   config.network = agent::EntityNetworkNamed(TextParameter("network", "pool"));
-  const Run run = Listen(scenario.run.agents, file);
+  const Heard run = Listen(scenario.run.agents, file);
   ASSERT_FALSE(HasFailure());
   const agent::EntityPolicy learned = agent::EntityPolicy::LoadOnnx(file);
   config::Override(&scenario, learn::SwarmRewardKeys());
@@ -141,7 +141,7 @@ TEST(TrainField, RecordsAndLearnsWhatTheEnvironmentDoes) {
   std::printf("largest difference of a parameter %.3g, largest change by the update %.3g\n", worst,
               moved);
   EXPECT_LE(worst, kTolerance);
-  EXPECT_GT(moved, 100.0 * kTolerance);
+  EXPECT_GT(moved, 10.0 * kTolerance);
   for (std::size_t k = 0; k < policy.parameters().log_std.size(); ++k) {
     EXPECT_NEAR(learned.parameters().log_std[k], policy.parameters().log_std[k], kTolerance);
   }

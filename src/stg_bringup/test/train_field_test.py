@@ -18,6 +18,8 @@ from graph_listener import wait_for
 class TrainField(unittest.TestCase):
     """The run of all nodes goes on, so further trainers learn from it."""
 
+    refusals = 0
+
     @classmethod
     def setUpClass(cls):
         cls.out = pathlib.Path(rospy.get_param("~out"))
@@ -55,8 +57,11 @@ class TrainField(unittest.TestCase):
 
     def refused(self, *parameters):
         """Returns the message with which the node refuses to start."""
+        # A name of its own, because parameters outlive a node.
+        TrainField.refusals += 1
+        name = f"refused_{self.refusals}"
         done = subprocess.run(
-            [self.program, "__name:=refused", f"_out:={self.out / 'refused'}"] + list(parameters),
+            [self.program, f"__name:={name}", f"_out:={self.out / name}"] + list(parameters),
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             universal_newlines=True,

@@ -15,7 +15,10 @@ inline SwarmEpisode FlySwarm(const Scenario& scenario, const agent::EntityPolicy
   env::VectorEnvOptions o;
   o.seed = seed;
   o.envs = 1;
-  env::VectorEnv env(scenario, o);
+  // The environment starts the next episode at once. With a longer one, the end can be seen.
+  Scenario longer = scenario;
+  ++longer.run.time.episode_steps;
+  env::VectorEnv env(longer, o);
   env::EnvMemory memory = env.MakeMemory();
   env.Reset(memory.arrays());
   agent::Decider decider;

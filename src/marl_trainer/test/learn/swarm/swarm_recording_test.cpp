@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kSteps = 40, kCommands = 8;
+constexpr int kFlightSteps = 40, kFlightCommands = 8;
 
 class SwarmRecording : public ::testing::Test {
  protected:
@@ -36,7 +36,7 @@ class SwarmRecording : public ::testing::Test {
   static Scenario Short(const std::string& name = "field", int agents = 3) {
     return LoadNamedScenario(
         config::ScenarioFolder(), name, "nominal",
-        {"agents=" + std::to_string(agents), "time.episode_steps=" + std::to_string(kSteps),
+        {"agents=" + std::to_string(agents), "time.episode_steps=" + std::to_string(kFlightSteps),
          "time.tail_steps=20", "reset.stages.medium.auv_distance_m=[80, 150]"});
   }
   std::unique_ptr<RecordedSwarmTrainer> Trainer(const std::string& name,
@@ -72,8 +72,8 @@ TEST_F(SwarmRecording, ARecordedFlightGivesTheRolloutAndTheUpdateOfTheCollector)
     const bool free = network == agent::EntityNetwork::kGraph;
     scenario_ = Short(free ? "many8" : "field", free ? 4 : 3);
     config_.network = network;
-    config_.horizon = kCommands;
-    config_.episode_steps = kSteps;
+    config_.horizon = kFlightCommands;
+    config_.episode_steps = kFlightSteps;
     const std::string name = agent::EntityNetworkName(network);
     const auto trainer = Trainer(name);
     SwarmLearner learner(config_);
@@ -155,7 +155,7 @@ TEST_F(SwarmRecording, TrainingGoesOnFromItsFolder) {
   halves.reset();
   halves = Trainer("halves");
   EXPECT_EQ(halves->policy_id(), whole->policy_id());
-  EXPECT_EQ(halves->env_steps(), kSteps);
+  EXPECT_EQ(halves->env_steps(), kFlightSteps);
   const SwarmEpisode second = FlySwarm(whole->scenario(), whole->policy(), 2);
   whole->Update({second});
   halves->Update({second});
