@@ -14,7 +14,7 @@
 #include "auv_common/nodes/node_main.hpp"
 #include "auv_common/nodes/parameters.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
-#include "learners/bag_reader.hpp"
+#include "bag_reader.hpp"
 #include "learners/make_learner.hpp"
 #include "stg_agent/nodes/topics.hpp"
 #include "trainer_parameters.hpp"

@@ -109,10 +109,7 @@ void AgentNode::OnFrame(const auv_msgs::SensorFrame::ConstPtr& message) {
     refused_frames_.Add(Refusals::kFrame);
     return;
   }
-  if (!FinitePose(message->pose) || !FiniteTwist(message->twist) ||
-      !Finite(message->position_std) || !Finite(message->heading_std) ||
-      message->position_std < 0.0 || message->heading_std < 0.0 ||
-      !FiniteVector(message->fix_position) || !Finite(message->fix_std) || message->fix_std < 0.0) {
+  if (!FiniteFrame(*message)) {
     refused_frames_.Add(Refusals::kNotFinite);
     return;
   }
@@ -201,14 +198,7 @@ void AgentNode::ForgetRun() {
 }
 
 void AgentNode::StartEpisode(const auv_msgs::SensorFrame& frame) {
-  dynamics::Cue cue;
-  cue.target = -1;  // no target
-  if (frame.cue_valid && FiniteVector(frame.cue_position) && Finite(frame.cue_std) &&
-      frame.cue_std >= 0.0) {
-    cue.target = model_.target.of(id_);
-    cue.p_WT = VectorOf(frame.cue_position);
-    cue.std_m = frame.cue_std;
-  }
+  dynamics::Cue cue = CueOf(frame, model_.target.of(id_));
   agent_.Reset(frame.episode, cue);
   const auto finite = [](const auto& p) { return FiniteVector(p); };
   if (cue.target >= 0 && frame.cues.size() == static_cast<std::size_t>(model_.target.count) &&
@@ -235,20 +225,11 @@ void AgentNode::Decide() {
     StartEpisode(*frame_);
   }
   pending_.Give(start_, stamp, &agent_);
-  dynamics::NavState nav = NavOf(frame_->pose, frame_->twist, stamp - start_);
-  nav.position_std_m = frame_->position_std;
-  nav.heading_std_rad = frame_->heading_std;
-  if (frame_->fix_std > 0.0) {
-    nav.fix_stamp = NsOf(frame_->fix_stamp) - start_;
-    nav.p_WF = VectorOf(frame_->fix_position);
-    nav.fix_std_m = frame_->fix_std;
-  }
-  agent_.Observe(nav, observation_.data());
-  const bool draws = explore_ && decider_.entities != nullptr;
+  agent_.Observe(NavOf(*frame_, start_), observation_.data());
   drew_ = false;
   if (decider_.observes()) {
     decider_.Act(id_, observation_.data(), action_);
-  } else if (draws) {
+  } else if (explore_ && decider_.entities != nullptr) {
     drew_ = decider_.Explore(frame_->seed, frame_->step, agent_.view(), &drawn_, action_);
   } else {
     decider_.Act(agent_.view(), action_);

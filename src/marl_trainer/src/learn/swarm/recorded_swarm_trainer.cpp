@@ -112,7 +112,7 @@ RecordedSwarmTrainer::RecordedSwarmTrainer(const Scenario& scenario, const Swarm
       learner_(config),
       folder_(options.out, options.log) {
   config_.ValidateOrThrow();
-  RequireRecordable(scenario_);
+  RequireRecordable(scenario_.judge());
   folder_.Lock();
   UseOneBlasThread();
   state_.config = TextOf(config_);
@@ -159,10 +159,11 @@ Finding RecordedSwarmTrainer::Check(const SwarmEpisode& episode) const {
 RecordedTrainer::Progress RecordedSwarmTrainer::Update(const std::vector<SwarmEpisode>& episodes) {
   assert(!episodes.empty());
   const Stopwatch watch;
+  const task::JudgeConfig judge = scenario_.judge();
   std::vector<SwarmRollout> rollouts(episodes.size());
   pool_.Run(static_cast<int>(episodes.size()), [&](int e, int) {
     const auto i = static_cast<std::size_t>(e);
-    rollouts[i] = RolloutOf(config_, scenario_, episodes[i]);
+    rollouts[i] = RolloutOf(config_, judge, episodes[i]);
   });
   const bool acts = state_.collections >= options_.critic_updates;
   const SwarmLearner::Report report =

@@ -67,13 +67,8 @@ bool Finite(const SwarmMoment& m) {
 
 }  // namespace
 
-void RequireRecordable(const Scenario& s) {
+void RequireRecordable(const task::JudgeConfig& s) {
   const std::string what = "scenario '" + s.run.name + "': ";
-  if (s.mode != InformationMode::kAcoustic) {
-    throw UserError(what +
-                    "an entity policy uses only an AUV's own knowledge, so mode must be "
-                    "acoustic");
-  }
   if (!s.world.sea.open) {
     throw UserError(what +
                     "networks over entities learn in open water only (sea.open); "
@@ -110,7 +105,7 @@ Finding CheckSwarmEpisode(const RunConfig& run, const SwarmEpisode& episode,
   return {};
 }
 
-SwarmRollout RolloutOf(const SwarmConfig& config, const Scenario& scenario,
+SwarmRollout RolloutOf(const SwarmConfig& config, const task::JudgeConfig& scenario,
                        const SwarmEpisode& episode) {
   const SwarmReward reward(config, scenario);
   const int n = scenario.run.agents, period = agent::DecisionsPerCommand(scenario.run);

@@ -19,7 +19,7 @@ double ShareCovered(const std::vector<int>& inside) {
   return sum / static_cast<double>(inside.size());
 }
 
-SwarmReward::SwarmReward(const SwarmConfig& config, const Scenario& scenario)
+SwarmReward::SwarmReward(const SwarmConfig& config, const task::JudgeConfig& scenario)
     : agents_(scenario.run.agents),
       targets_count_(scenario.world.target.count),
       free_(scenario.agent.task.free()),

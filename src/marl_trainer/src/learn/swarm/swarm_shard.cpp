@@ -39,7 +39,7 @@ SwarmShard::SwarmShard(const env::EnvFactory& make_env, const SwarmConfig& confi
     : config_(config),
       first_env_(first_env),
       env_(make_env.Make(ShardOptions(config, first_env, envs, total_envs))),
-      reward_(config, env_.scenario()),
+      reward_(config, env_.scenario().judge()),
       memory_(env_.MakeMemory()),
       entities_(static_cast<std::size_t>(envs * env_.agents())),
       now_(RowSizes(agent::EntityGraphSpec(1))),

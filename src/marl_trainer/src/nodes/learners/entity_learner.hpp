@@ -22,7 +22,9 @@ class EntityLearner : public OnlineLearner {
   }
 
   std::vector<ros::Subscriber> Subscribe(const Hooks& hooks) override;
-  void Restart() override { inlet_ = std::make_unique<SwarmInlet>(trainer_.scenario(), "live"); }
+  void Restart() override {
+    inlet_ = std::make_unique<SwarmInlet>(trainer_.scenario().judge(), "live");
+  }
   std::vector<Episode> TakeDone() override;
   Bag ReadBag(const std::string& path) override;
   learn::RecordedTrainer::Progress Update() override {

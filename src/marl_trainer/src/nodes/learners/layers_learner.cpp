@@ -2,9 +2,9 @@
 
 #include <ros/node_handle.h>
 
+#include "../bag_reader.hpp"
 #include "auv_common/nodes/node_main.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
-#include "bag_reader.hpp"
 #include "stg_agent/nodes/topics.hpp"
 
 namespace stg::nodes {

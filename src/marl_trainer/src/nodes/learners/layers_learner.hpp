@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "../record_inlet.hpp"
 #include "online_learner.hpp"
-#include "record_inlet.hpp"
 
 namespace stg::nodes {
 

@@ -48,7 +48,7 @@ std::unique_ptr<OnlineLearner> MakeLayersLearner(const Scenario& scenario,
 std::unique_ptr<OnlineLearner> MakeEntityLearner(const Scenario& scenario,
                                                  const std::string& network,
                                                  const std::string& start) {
-  learn::RequireRecordable(scenario);
+  learn::RequireRecordable(scenario.judge());
   if (TextParameter("algorithm", learn::DefaultAlgorithm()) != learn::DefaultAlgorithm()) {
     throw UserError("parameter algorithm: a network over entities learns by " +
                     learn::DefaultAlgorithm());

@@ -9,13 +9,13 @@
 
 namespace stg::nodes {
 
-SwarmInlet::SwarmInlet(const Scenario& scenario, const std::string& source)
+SwarmInlet::SwarmInlet(const task::JudgeConfig& scenario, const std::string& source)
     : scenario_(scenario),
       source_(source),
       period_(scenario.run.decision_period()),
       steps_(static_cast<std::uint32_t>(scenario.run.time.episode_steps)),
       decisions_(static_cast<std::uint32_t>(agent::DecisionsPerCommand(scenario.run))),
-      judge_(scenario.judge()) {}
+      judge_(scenario) {}
 
 template <class Message>
 SwarmInlet::Recording* SwarmInlet::At(const Message& m) {

@@ -19,7 +19,7 @@ namespace stg::nodes {
 /// judge of the metrics node, with the reward of the given scenario.
 class SwarmInlet {
  public:
-  SwarmInlet(const Scenario& scenario, const std::string& source);
+  SwarmInlet(const task::JudgeConfig& scenario, const std::string& source);
 
   void Add(const auv_msgs::SwarmState::ConstPtr& message);
   /// @param agent index of the AUV of the message's topic.
@@ -50,7 +50,7 @@ class SwarmInlet {
   learn::Finding FindGap(const Recording& recording) const;
   learn::SwarmMoment MomentOf(const SwarmFrame& frame);
 
-  const Scenario scenario_;
+  const task::JudgeConfig scenario_;
   const std::string source_;
   const TimeNs period_;                    ///< of decisions [ns]
   const std::uint32_t steps_, decisions_;  ///< of an episode; of a command

@@ -84,7 +84,7 @@ TEST_F(SwarmRecording, ARecordedFlightGivesTheRolloutAndTheUpdateOfTheCollector)
     const SwarmEpisode episode =
         FlySwarm(trainer->scenario(), trainer->policy(), TrainingSeed(config_.seed));
     ASSERT_EQ(trainer->Check(episode).flaw, Flaw::kNone) << trainer->Check(episode).where;
-    SwarmRollout rollout = RolloutOf(config_, trainer->scenario(), episode);
+    SwarmRollout rollout = RolloutOf(config_, trainer->scenario().judge(), episode);
     SwarmRollout& expected = collected[0];
     EXPECT_EQ(rollout.choices, expected.choices);
     EXPECT_EQ(rollout.done, expected.done);
@@ -207,7 +207,9 @@ TEST_F(SwarmRecording, RefusesWhatDoesNotFit) {
   EXPECT_NE(read(folder_.string()).find("holds no checkpoint"), std::string::npos);
   EXPECT_NE(read("/nonexistent.onnx").find("no such policy file"), std::string::npos);
   EXPECT_EQ(read(policies + "field.onnx"), "");
-  const auto recordable = [&](const Scenario& s) { return message([&] { RequireRecordable(s); }); };
+  const auto recordable = [&](const Scenario& s) {
+    return message([&] { RequireRecordable(s.judge()); });
+  };
   EXPECT_NE(recordable(LoadNamedScenario(config::ScenarioFolder(), "medium")).find("open water"),
             std::string::npos);
   EXPECT_NE(recordable(LoadNamedScenario(config::ScenarioFolder(), "many8_deaths")).find("fleet"),

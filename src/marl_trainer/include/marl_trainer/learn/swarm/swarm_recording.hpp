@@ -33,9 +33,9 @@ struct SwarmEpisode {
   std::vector<SwarmCommand> commands;  ///< [commands, agents]
 };
 
-/// Throws UserError unless swarms of this scenario can learn from recordings: it must have the mode
-/// acoustic and open water, no AUV joins or leaves, and its episodes last whole commands.
-void RequireRecordable(const Scenario& scenario);
+/// Throws UserError unless swarms of this scenario can learn from recordings: it must have open
+/// water, no AUV joins or leaves, and its episodes last whole commands.
+void RequireRecordable(const task::JudgeConfig& scenario);
 
 /// The first flaw of an episode for on-policy learning with `policy`, or kNone.
 Finding CheckSwarmEpisode(const RunConfig& run, const SwarmEpisode& episode,
@@ -44,7 +44,7 @@ Finding CheckSwarmEpisode(const RunConfig& run, const SwarmEpisode& episode,
 /// The rollout of an episode that has passed the check: that which SwarmShard collects from the
 /// same flight. There is one difference. After the last decision, SwarmShard sees the next episode
 /// already, so it takes the reward of the band there from the wrong place.
-SwarmRollout RolloutOf(const SwarmConfig& config, const Scenario& scenario,
+SwarmRollout RolloutOf(const SwarmConfig& config, const task::JudgeConfig& scenario,
                        const SwarmEpisode& episode);
 
 }  // namespace stg::learn

@@ -27,7 +27,7 @@ struct Outcome {
 /// for each AUV of one swarm.
 class SwarmReward {
  public:
-  SwarmReward(const SwarmConfig& config, const Scenario& scenario);
+  SwarmReward(const SwarmConfig& config, const task::JudgeConfig& scenario);
 
   /// Adds the reward of one decision: that of the scenario, and that of the band.
   void Add(const Outcome* outcomes, float* sums) const;

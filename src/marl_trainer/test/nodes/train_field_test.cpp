@@ -121,7 +121,7 @@ TEST(TrainField, RecordsAndLearnsWhatTheEnvironmentDoes) {
       ASSERT_FALSE(HasFailure()) << "episode " << number << ", step " << step << ", AUV " << k % n;
       rows += episode.commands[k].decision.entities.neighbours;
     }
-    rollouts.push_back(learn::RolloutOf(config, scenario, episode));
+    rollouts.push_back(learn::RolloutOf(config, scenario.judge(), episode));
   }
   ASSERT_EQ(rollouts.size(), used);
   EXPECT_GT(rows, 0) << "no AUV knew a neighbour";

@@ -6,13 +6,13 @@ import pathlib
 import shutil
 import subprocess
 import threading
+import time
 import unittest
 
 import roslib.packages
 import rosnode
 import rospy
 import rostest
-from graph_listener import wait_for
 
 
 class TrainField(unittest.TestCase):
@@ -26,7 +26,9 @@ class TrainField(unittest.TestCase):
         cls.network = rospy.get_param("~network")
         cls.policies = pathlib.Path(roslib.packages.get_pkg_dir("stg_bringup")) / "policies"
         cls.program = roslib.packages.find_node("marl_trainer", "trainer_node")[0]
-        wait_for(lambda: "/trainer" not in rosnode.get_node_names(), 40.0, "the trainer ends")
+        end = time.time() + 40.0
+        while "/trainer" in rosnode.get_node_names() and time.time() < end:
+            time.sleep(0.2)
 
     @classmethod
     def tearDownClass(cls):
@@ -110,4 +112,4 @@ class TrainField(unittest.TestCase):
 
 if __name__ == "__main__":
     rospy.init_node("train_field_refusals")
-    rostest.rosrun("stg_bringup", "train_field_refusals", TrainField)
+    rostest.rosrun("marl_trainer", "train_field_refusals", TrainField)
