@@ -26,7 +26,7 @@ float DrawCommand(const CommandDistribution& of, Random* random, int* choice, fl
   *choice = 0;
   float log_density = 0.0F;
   if (of.chooses) {
-    float log_shares[kMostChoices];
+    float log_shares[kMostChoices] = {};
     LogShares(of.logits, of.choices, log_shares);
     double left = random->Uniform();
     while (*choice + 1 < of.choices &&
@@ -47,7 +47,7 @@ double LogDensity(const EntityPolicy& policy, const Entities& entities, int choi
   const int size = CommandSize(policy.action());
   double log_density = 0.0;
   if (Chooses(policy)) {
-    float log_shares[kMostChoices];
+    float log_shares[kMostChoices] = {};
     LogShares(logits, count, log_shares);
     log_density = static_cast<double>(log_shares[choice]);
   }

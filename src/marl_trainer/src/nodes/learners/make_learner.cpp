@@ -16,7 +16,7 @@ namespace {
 
 /// auto: a network over entities in open water and for a policy over entities, otherwise layers.
 std::string NetworkName(const Scenario& scenario, bool live, const std::string& start) {
-  const std::string network = TextParameter("network", "auto");
+  std::string network = TextParameter("network", "auto");
   if (network == "layers" || network == "pool" || network == "graph") return network;
   if (network != "auto") {
     throw UserError("parameter network: '" + network + "' is none of auto, layers, pool, graph");
