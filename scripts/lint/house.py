@@ -49,6 +49,8 @@ COMPOSITION_ROOTS = (
     "stg_env/env/vector_env",
     "marl_trainer/learn/recorded/recorded_trainer",
     "marl_trainer/learn/run/trainer",
+    "marl_trainer/learn/swarm/recorded_swarm_trainer",
+    "marl_trainer/nodes/learners/",
     "marl_trainer/tools/",
     "stg_python/bindings/",
     "stg_python/env/env_pool",

@@ -15,13 +15,14 @@
 #include "auv_common/nodes/parameters.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
 #include "bag_reader.hpp"
+#include "learners/make_learner.hpp"
 #include "stg_agent/nodes/topics.hpp"
 #include "trainer_parameters.hpp"
 
 namespace stg::nodes {
 namespace {
 
-constexpr std::uint32_t kUnlimited = 0;  // length of a queue: nothing may be lost during an update
+constexpr std::uint32_t kSummaries = 0;  // length of a queue: nothing may be lost during an update
 constexpr double kSummaryPatience_s = 1.0;  // after the last step of an episode
 constexpr double kLoadInterval_s = 0.5;     // between attempts to give agents their policy
 
@@ -44,20 +45,11 @@ TrainerNode::TrainerNode()
       agent_policies_(static_cast<std::size_t>(scenario_.run.agents)),
       began_(ros::WallTime::now()),
       health_("trainer", "trainer", [this](auto& status) { Report(status); }) {
-  learn::RecordedTrainer::Options options;
-  options.out = TextParameter("out", "");
-  if (options.out.empty()) throw UserError("parameter out: must name a folder");
-  options.policy = TextParameter("start_policy", "");
-  options.workers = IntegerParameter("workers", 2, 1, 1024);
-  options.log = &std::cout;
-  learn::TrainSetup setup =
-      learn::RecordedSetup(scenario_.run, TextParameter("algorithm", learn::DefaultAlgorithm()));
-  LoadTrainParameters(&setup);
-  trainer_ = std::make_unique<learn::RecordedTrainer>(scenario_, setup, options);
+  learner_ = MakeLearner(scenario_, bags_.empty());
 }
 
 void TrainerNode::Spin() {
-  std::cout << "trainer: policy '" << trainer_->policy_id() << "' in " << trainer_->policy_path()
+  std::cout << "trainer: policy '" << learner_->policy_id() << "' in " << learner_->policy_path()
             << std::endl;
   if (bags_.empty()) {
     TrainLive();
@@ -66,55 +58,54 @@ void TrainerNode::Spin() {
   }
 }
 
-void TrainerNode::Judge(learn::RecordedEpisode episode) {
-  const learn::Finding finding = trainer_->Check(episode);
-  if (finding.flaw == learn::Flaw::kNone) {
-    ++recording_.used;
-    collection_.push_back(std::move(episode));
-    return;
+void TrainerNode::Count(const std::vector<OnlineLearner::Episode>& episodes) {
+  for (const OnlineLearner::Episode& episode : episodes) {
+    const learn::Finding& finding = episode.finding;
+    if (finding.flaw == learn::Flaw::kNone) {
+      ++recording_.used;
+      collection_.push_back(episode.number);
+      continue;
+    }
+    ++recording_.dropped[static_cast<std::size_t>(finding.flaw)];
+    // For a bag, all warnings are logged. For a live run they are limited, because it has no end.
+    if (bags_.empty() && !dropped_.Due()) continue;
+    ROS_WARN("trainer: %s, episode %u dropped: %s (%s)%s", episode.source.c_str(), episode.number,
+             ToString(finding.flaw), finding.where.c_str(), dropped_.more().c_str());
   }
-  ++recording_.dropped[static_cast<std::size_t>(finding.flaw)];
-  // For a bag, all warnings are logged. For a live run they are limited, because it has no end.
-  if (inlet_ && !dropped_.Due()) return;
-  ROS_WARN("trainer: %s, episode %u dropped: %s (%s)%s", episode.source.c_str(), episode.number,
-           ToString(finding.flaw), finding.where.c_str(), dropped_.more().c_str());
 }
 
 void TrainerNode::TrainOnBags() {
   for (const std::string& bag : FindBags(bags_)) {
-    BagContents contents = ReadBag(bag, scenario_.run, ToYaml(scenario_));
+    const OnlineLearner::Bag contents = learner_->ReadBag(bag);
     if (!contents.error.empty()) {
       ++recording_.unreadable_sources;
       ROS_ERROR("trainer: %s: %s", bag.c_str(), contents.error.c_str());
     }
     recording_.foreign_messages += contents.foreign_messages;
-    for (learn::RecordedEpisode& episode : contents.episodes) Judge(std::move(episode));
+    Count(contents.episodes);
     health_.Tick();
   }
   std::cout << "trainer: " << recording_.Text() << std::endl;
   if (collection_.empty()) throw UserError("no episode to learn from");
-  Print(trainer_->Update(collection_));
-  std::cout << "trainer: policy is now '" << trainer_->policy_id() << "'" << std::endl;
+  Print(learner_->Update());
+  std::cout << "trainer: policy is now '" << learner_->policy_id() << "'" << std::endl;
 }
 
 void TrainerNode::Subscribe() {
+  OnlineLearner::Hooks hooks;
+  hooks.wanted = [this](std::uint32_t episode, const ros::Time& stamp) {
+    return episode >= first_episode_ && PossibleStamp(stamp);
+  };
+  hooks.flown = [this](int agent, const std::string& policy) {
+    agent_policies_[static_cast<std::size_t>(agent)] = policy;
+  };
+  hooks.time = [](const ros::Time& stamp) { SetNodeTime(stamp); };
+  subscribers_ = learner_->Subscribe(hooks);
   ros::NodeHandle node;
-  inlet_ = std::make_unique<RecordInlet>(scenario_.run, "live");
-  for (int i = 0; i < scenario_.run.agents; ++i) {
-    const boost::function<void(const auv_msgs::AgentStep::ConstPtr&)> callback =
-        [this, i](const auv_msgs::AgentStep::ConstPtr& m) { OnAgentStep(i, *m); };
-    subscribers_.push_back(
-        node.subscribe<auv_msgs::AgentStep>(topics::AuvTopic(i, topics::kAgentStep), kUnlimited,
-                                            callback, ros::VoidConstPtr(), NoDelay()));
-  }
-  const boost::function<void(const auv_msgs::StepReport::ConstPtr&)> report =
-      [this](const auv_msgs::StepReport::ConstPtr& m) { OnReport(*m); };
   const boost::function<void(const auv_msgs::EpisodeSummary::ConstPtr&)> summary =
       [this](const auv_msgs::EpisodeSummary::ConstPtr& m) { OnSummary(*m); };
-  subscribers_.push_back(node.subscribe<auv_msgs::StepReport>(
-      topics::kStepReport, kUnlimited, report, ros::VoidConstPtr(), NoDelay()));
   subscribers_.push_back(node.subscribe<auv_msgs::EpisodeSummary>(
-      topics::kEpisodeSummary, kUnlimited, summary, ros::VoidConstPtr(), NoDelay()));
+      topics::kEpisodeSummary, kSummaries, summary, ros::VoidConstPtr(), NoDelay()));
 }
 
 void TrainerNode::TrainLive() {
@@ -124,9 +115,7 @@ void TrainerNode::TrainLive() {
   while (ros::ok() && !finished) {
     HandleMessages(0.05);
     UpdateAgents();
-    for (learn::RecordedEpisode& episode : inlet_->episodes().TakeDone()) {
-      Judge(std::move(episode));
-    }
+    Count(learner_->TakeDone());
     if (CollectionFull() && SummariesIn()) {
       Learn();
       finished = (updates_ > 0 && updates_done_ >= updates_) || TargetReached();
@@ -135,20 +124,8 @@ void TrainerNode::TrainLive() {
   }
   std::cout << "trainer: " << (finished ? "finished" : "stopped") << " after " << updates_done_
             << " updates, " << Seconds(ros::WallTime::now() - began_) << ": " << recording_.Text()
-            << "\ntrainer: policy '" << trainer_->policy_id() << "' in " << trainer_->policy_path()
+            << "\ntrainer: policy '" << learner_->policy_id() << "' in " << learner_->policy_path()
             << std::endl;
-}
-
-void TrainerNode::OnAgentStep(int agent, const auv_msgs::AgentStep& message) {
-  if (message.episode < first_episode_ || !PossibleStamp(message.header.stamp)) return;
-  agent_policies_[static_cast<std::size_t>(agent)] = message.policy_id;
-  inlet_->Add(agent, message);
-}
-
-void TrainerNode::OnReport(const auv_msgs::StepReport& message) {
-  if (message.episode < first_episode_ || !PossibleStamp(message.header.stamp)) return;
-  SetNodeTime(message.header.stamp);
-  inlet_->Add(message);
 }
 
 void TrainerNode::OnSummary(const auv_msgs::EpisodeSummary& message) {
@@ -166,12 +143,12 @@ bool TrainerNode::CollectionFull() {
 bool TrainerNode::SummariesIn() const {
   if ((ros::WallTime::now() - *full_).toSec() > kSummaryPatience_s) return true;
   return std::all_of(collection_.begin(), collection_.end(),
-                     [this](const auto& e) { return summaries_.count(e.number) > 0; });
+                     [this](std::uint32_t e) { return summaries_.count(e) > 0; });
 }
 
 void TrainerNode::UpdateAgents() {
   const auto stale = [this](const std::string& id) {
-    return !id.empty() && id != trainer_->policy_id();
+    return !id.empty() && id != learner_->policy_id();
   };
   if (std::none_of(agent_policies_.begin(), agent_policies_.end(), stale)) return;
   if ((ros::WallTime::now() - last_load_).toSec() < kLoadInterval_s) return;
@@ -185,7 +162,7 @@ void TrainerNode::UpdateAgents() {
 
 bool TrainerNode::LoadPolicy(int agent) {
   auv_msgs::LoadPolicy call;
-  call.request.path = trainer_->policy_path();
+  call.request.path = learner_->policy_path();
   const std::string service = topics::Auv(agent) + "/agent/" + topics::kLoadPolicy;
   if (!ros::service::call(service, call)) {
     ROS_WARN("trainer: no answer of %s", service.c_str());
@@ -205,7 +182,7 @@ void TrainerNode::StartEpisode() {
   if (ros::service::call(topics::kReset, call) && call.response.success) {
     first_episode_ = call.response.episode;
   }
-  inlet_ = std::make_unique<RecordInlet>(scenario_.run, "live");
+  learner_->Restart();
 }
 
 void TrainerNode::PauseWorld(bool pause) {
@@ -218,10 +195,10 @@ void TrainerNode::Learn() {
   PauseWorld(true);
   // Resumes the world in any case, even after an error.
   const std::shared_ptr<void> resume(nullptr, [this](void*) { PauseWorld(false); });
-  const learn::RecordedTrainer::Progress progress = trainer_->Update(collection_);
+  const learn::RecordedTrainer::Progress progress = learner_->Update();
   ++updates_done_;
-  for (const learn::RecordedEpisode& episode : collection_) {
-    const auto summary = summaries_.find(episode.number);
+  for (const std::uint32_t episode : collection_) {
+    const auto summary = summaries_.find(episode);
     if (summary != summaries_.end()) lost_rates_.push_back(summary->second.lost_rate);
   }
   while (lost_rates_.size() > static_cast<std::size_t>(window_)) lost_rates_.pop_front();
@@ -242,18 +219,23 @@ bool TrainerNode::TargetReached() const {
          target_lost_rate_ * static_cast<double>(window_);
 }
 
-/// Prints one line of progress. Tail distance and lost rate are for the exploring swarm.
+/// Prints one line of progress. Return, tail distance, lost rate and share of the band are those of
+/// the exploring swarm, by the scenario's own reward.
 void TrainerNode::Print(const learn::RecordedTrainer::Progress& p) const {
-  double tail = 0.0, lost = 0.0;
+  double sum = 0.0, tail = 0.0, lost = 0.0, band = 0.0;
   const auto n = static_cast<double>(std::max<std::size_t>(1, summaries_.size()));
   for (const auto& [episode, s] : summaries_) {
+    sum += s.episode_return / n;
     tail += s.tail_distance / n;
     lost += s.lost_rate / n;
+    band += s.band_share / n;
   }
-  std::printf("update %3lld  %8lld steps  %4.0f s  return %7.1f", static_cast<long long>(p.updates),
-              static_cast<long long>(p.env_steps), (ros::WallTime::now() - began_).toSec(),
-              p.episode_return);
+  std::printf("update %3lld  %8lld steps  %4.0f s", static_cast<long long>(p.updates),
+              static_cast<long long>(p.env_steps), (ros::WallTime::now() - began_).toSec());
+  if (!p.own_reward) std::printf("  return %7.1f", p.episode_return);
+  if (p.own_reward && !summaries_.empty()) std::printf("  return %7.1f", sum);
   if (!summaries_.empty()) std::printf("  tail %.4f m  lost %.3f", tail, lost);
+  if (!summaries_.empty() && scenario_.world.sea.open) std::printf("  band %.3f", band);
   std::printf("  %s  %d episodes, %llu dropped, update %.1f s\n", p.report.c_str(), p.episodes,
               static_cast<unsigned long long>(recording_.total_dropped()), p.seconds);
   std::fflush(stdout);
@@ -261,10 +243,10 @@ void TrainerNode::Print(const learn::RecordedTrainer::Progress& p) const {
 
 void TrainerNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.summary(diagnostic_msgs::DiagnosticStatus::OK, "running");
-  if (trainer_) {
-    status.add("policy", trainer_->policy_id());
-    status.add("updates", trainer_->updates());
-    status.add("environment steps", trainer_->env_steps());
+  if (learner_) {
+    status.add("policy", learner_->policy_id());
+    status.add("updates", learner_->updates());
+    status.add("environment steps", learner_->env_steps());
   }
   status.add("episodes in this collection", collection_.size());
   status.add("episodes used", recording_.used);

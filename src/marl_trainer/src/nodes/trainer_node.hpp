@@ -1,8 +1,6 @@
 #pragma once
 
-#include <auv_msgs/AgentStep.h>
 #include <auv_msgs/EpisodeSummary.h>
-#include <auv_msgs/StepReport.h>
 #include <ros/node_handle.h>
 
 #include <deque>
@@ -13,8 +11,8 @@
 #include <vector>
 
 #include "auv_common/nodes/health.hpp"
-#include "marl_trainer/learn/recorded/recorded_trainer.hpp"
-#include "record_inlet.hpp"
+#include "learners/online_learner.hpp"
+#include "stg_env/scenario/scenario.hpp"
 
 namespace stg::nodes {
 
@@ -34,13 +32,11 @@ class TrainerNode {
   void TrainOnBags();
   void TrainLive();
   void Subscribe();
-  /// Adds the episode to the collection, or counts and reports its flaw.
-  void Judge(learn::RecordedEpisode episode);
+  /// Counts the episodes, and reports the flaws.
+  void Count(const std::vector<OnlineLearner::Episode>& episodes);
   void Learn();
   void Print(const learn::RecordedTrainer::Progress& progress) const;
 
-  void OnAgentStep(int agent, const auv_msgs::AgentStep& message);
-  void OnReport(const auv_msgs::StepReport& message);
   void OnSummary(const auv_msgs::EpisodeSummary& message);
   /// Loads the policy into agents whose last decision had another one.
   void UpdateAgents();
@@ -56,11 +52,10 @@ class TrainerNode {
   std::vector<std::string> bags_;
   int episodes_per_update_, updates_, window_;
   double target_lost_rate_;
-  std::unique_ptr<learn::RecordedTrainer> trainer_;
+  std::unique_ptr<OnlineLearner> learner_;
 
-  std::vector<learn::RecordedEpisode> collection_;
+  std::vector<std::uint32_t> collection_;  ///< episodes that the learner keeps for the next update
   learn::RecordingReport recording_;
-  std::unique_ptr<RecordInlet> inlet_;
   std::vector<ros::Subscriber> subscribers_;
   std::vector<std::string> agent_policies_;  ///< policy of each agent's last decision; "": unknown
   std::uint32_t first_episode_ = 0;  ///< first episode that the present policy flies from its start

@@ -42,19 +42,23 @@ std::string TextOf(const std::string& name, XmlRpc::XmlRpcValue value) {
 
 }  // namespace
 
-void LoadTrainParameters(learn::TrainSetup* setup) {
+std::vector<std::string> LoadTrainParameters(const config::Table& options,
+                                             const std::vector<std::string>& except) {
   const ros::NodeHandle node("~");
-  const config::Table table = setup->Options();
-  for (const config::Field& option : table.fields()) {
+  std::vector<std::string> given;
+  for (const config::Field& option : options.fields()) {
     std::string name = option.path;
     std::replace(name.begin(), name.end(), '-', '_');
     // Only private parameters, because `seed`, for example, also exists for the world.
     XmlRpc::XmlRpcValue value;
-    if (!node.getParam(name, value)) continue;
+    const bool skipped = std::find(except.begin(), except.end(), option.path) != except.end();
+    if (skipped || !node.getParam(name, value)) continue;
     if (const auto message = config::ParseText(option, TextOf(name, value))) {
       throw UserError("parameter " + name + ": " + *message);
     }
+    given.push_back(option.path);
   }
+  return given;
 }
 
 std::vector<std::string> LoadBagNames() {

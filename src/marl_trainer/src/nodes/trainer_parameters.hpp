@@ -3,14 +3,17 @@
 #include <string>
 #include <vector>
 
-#include "marl_trainer/learn/train_config.hpp"
+#include "auv_common/config/field.hpp"
 
 namespace stg::nodes {
 
-/// Reads private parameters into the setup. They have the names of the options of `train`, with _
-/// instead of -. Throws UserError for another type. The ranges are checked with the rest of the
-/// configuration.
-void LoadTrainParameters(learn::TrainSetup* setup);
+/// Reads private parameters into the options of a training. They have the names of the options,
+/// with _ instead of -. Throws UserError for another type. The ranges are checked with the rest of
+/// the configuration.
+/// @param except options that are not read here
+/// Returns the options that are set.
+std::vector<std::string> LoadTrainParameters(const config::Table& options,
+                                             const std::vector<std::string>& except = {});
 
 /// The bags to train on: a list of texts, or one text with names separated by spaces.
 std::vector<std::string> LoadBagNames();

@@ -29,6 +29,13 @@ float Decider::Explore(std::uint64_t seed, std::uint32_t step, int id, float* ac
   return SampleGaussian(log_std.data(), static_cast<int>(log_std.size()), &random, action);
 }
 
+bool Decider::Explore(std::uint64_t seed, std::uint32_t step, const AgentView& agent,
+                      EntityDecision* decision, float* action) const {
+  const auto decisions = static_cast<std::uint32_t>(DecisionsPerCommand(agent.model().run));
+  Random random(seed, Stream::kPolicy, 0, step / decisions, static_cast<std::uint32_t>(agent.id()));
+  return FlyExploring(*entities, agent, &random, decision, action);
+}
+
 const std::string& Decider::IdOf(int id) const {
   if (observes()) return PolicyOf(id).metadata().id;
   return entities != nullptr ? entities->metadata().id : name;

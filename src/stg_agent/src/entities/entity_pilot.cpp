@@ -81,6 +81,10 @@ Guidance<double> GuidanceOf(const float* command, double doubt_m) {
   return g;
 }
 
+int DecisionsPerCommand(const RunConfig& run) {
+  return static_cast<int>(std::lround(kCommandPeriod_s / run.decision_dt_s()));
+}
+
 bool CommandDue(const EntityMemory& memory) {
   return !memory.commanded || Seconds(memory.now - memory.command_time) >= kCommandPeriod_s - 1e-6;
 }

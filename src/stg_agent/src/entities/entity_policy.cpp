@@ -116,23 +116,32 @@ EntityPolicy::EntityPolicy(Parameters parameters)
   parameters_.metadata.action_scale = 1.0;
 }
 
-int EntityPolicy::Command(const Entities& entities, float* command) const {
-  const int size = CommandSize(parameters_.action);
-  int choice = 0;
+int EntityPolicy::Choices(const Entities& entities, float* logits, float* commands) const {
+  int count = 1;
   if (const auto* graph = std::get_if<GraphNetwork>(&network_)) {
-    float choices[kTargetRows + 1], commands[(kTargetRows + 1) * kCommandNumbers];
-    graph->Forward(EntityGraphRows(entities), choices, commands);
-    // The first of equal choices: with all zeros the present target stays.
-    for (int t = 1; t <= entities.targets; ++t) {
-      if (choices[t] > choices[choice]) choice = t;
-    }
-    std::copy(commands + choice * size, commands + (choice + 1) * size, command);
+    graph->Forward(EntityGraphRows(entities), logits, commands);
+    count = entities.targets + 1;
   } else {
     PoolRows sets[kEntitySets];
     EntityRows(entities, &sets);
-    std::get<PoolNetwork>(network_).Forward(entities.self, entities.search, sets, command);
+    std::get<PoolNetwork>(network_).Forward(entities.self, entities.search, sets, commands);
+    logits[0] = 0.0F;
   }
-  for (int k = 0; k < size; ++k) command[k] = std::tanh(command[k]);
+  const int numbers = count * CommandSize(parameters_.action);
+  for (int k = 0; k < numbers; ++k) commands[k] = std::tanh(commands[k]);
+  return count;
+}
+
+int EntityPolicy::Command(const Entities& entities, float* command) const {
+  const int size = CommandSize(parameters_.action);
+  float logits[kTargetRows + 1], commands[(kTargetRows + 1) * kCommandNumbers];
+  const int count = Choices(entities, logits, commands);
+  // The first of equal choices: with all zeros the present target stays.
+  int choice = 0;
+  for (int t = 1; t < count; ++t) {
+    if (logits[t] > logits[choice]) choice = t;
+  }
+  std::copy(commands + choice * size, commands + (choice + 1) * size, command);
   return choice;
 }
 

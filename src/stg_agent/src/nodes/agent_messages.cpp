@@ -6,6 +6,35 @@
 
 namespace stg::nodes {
 
+bool FiniteFrame(const auv_msgs::SensorFrame& m) {
+  return FinitePose(m.pose) && FiniteTwist(m.twist) && Finite(m.position_std) &&
+         Finite(m.heading_std) && m.position_std >= 0.0 && m.heading_std >= 0.0 &&
+         FiniteVector(m.fix_position) && Finite(m.fix_std) && m.fix_std >= 0.0;
+}
+
+dynamics::NavState NavOf(const auv_msgs::SensorFrame& m, TimeNs start) {
+  dynamics::NavState nav = NavOf(m.pose, m.twist, NsOf(m.header.stamp) - start);
+  nav.position_std_m = m.position_std;
+  nav.heading_std_rad = m.heading_std;
+  if (m.fix_std > 0.0) {
+    nav.fix_stamp = NsOf(m.fix_stamp) - start;
+    nav.p_WF = VectorOf(m.fix_position);
+    nav.fix_std_m = m.fix_std;
+  }
+  return nav;
+}
+
+dynamics::Cue CueOf(const auv_msgs::SensorFrame& m, int target) {
+  dynamics::Cue cue;
+  cue.target = -1;  // no target
+  if (m.cue_valid && FiniteVector(m.cue_position) && Finite(m.cue_std) && m.cue_std >= 0.0) {
+    cue.target = target;
+    cue.p_WT = VectorOf(m.cue_position);
+    cue.std_m = m.cue_std;
+  }
+  return cue;
+}
+
 void SetTaskState(const agent::Agent& agent, const agent::AgentOutput& output,
                   auv_msgs::TaskState* m) {
   const agent::TaskView task = agent.task();

@@ -1,10 +1,18 @@
 #pragma once
 
+#include <auv_msgs/SensorFrame.h>
 #include <auv_msgs/TaskState.h>
 
 #include "stg_agent/agent/agent.hpp"
 
 namespace stg::nodes {
+
+/// Whether pose, twist, deviations and fix of a frame are numbers that an agent can use.
+bool FiniteFrame(const auv_msgs::SensorFrame& message);
+/// The navigation of a frame. @param start clock time of the episode's step 0
+dynamics::NavState NavOf(const auv_msgs::SensorFrame& message, TimeNs start);
+/// The cue of a frame about `target`; its target is -1 if there is no usable cue.
+dynamics::Cue CueOf(const auv_msgs::SensorFrame& message, int target);
 
 /// Writes an agent's knowledge and action after Observe and Act. The caller sets header, episode
 /// and step.

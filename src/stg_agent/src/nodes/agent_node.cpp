@@ -14,6 +14,7 @@
 #include "auv_dynamics/nodes/conversions.hpp"
 #include "auv_dynamics/nodes/topics.hpp"
 #include "run_model.hpp"
+#include "stg_agent/nodes/entity_messages.hpp"
 #include "stg_agent/nodes/topics.hpp"
 
 namespace stg::nodes {
@@ -77,6 +78,8 @@ void AgentNode::Advertise() {
                   [this](auto* message) { return SetTask(message); });
   step_.Advertise(own(topics::kAgentStep), kQueue,
                   [this](auto* message) { return SetStep(message); });
+  entity_step_.Advertise(own(topics::kEntityStep), kQueue,
+                         [this](auto* message) { return SetEntityStep(message); });
 }
 
 void AgentNode::Spin() {
@@ -106,10 +109,7 @@ void AgentNode::OnFrame(const auv_msgs::SensorFrame::ConstPtr& message) {
     refused_frames_.Add(Refusals::kFrame);
     return;
   }
-  if (!FinitePose(message->pose) || !FiniteTwist(message->twist) ||
-      !Finite(message->position_std) || !Finite(message->heading_std) ||
-      message->position_std < 0.0 || message->heading_std < 0.0 ||
-      !FiniteVector(message->fix_position) || !Finite(message->fix_std) || message->fix_std < 0.0) {
+  if (!FiniteFrame(*message)) {
     refused_frames_.Add(Refusals::kNotFinite);
     return;
   }
@@ -198,14 +198,7 @@ void AgentNode::ForgetRun() {
 }
 
 void AgentNode::StartEpisode(const auv_msgs::SensorFrame& frame) {
-  dynamics::Cue cue;
-  cue.target = -1;  // no target
-  if (frame.cue_valid && FiniteVector(frame.cue_position) && Finite(frame.cue_std) &&
-      frame.cue_std >= 0.0) {
-    cue.target = model_.target.of(id_);
-    cue.p_WT = VectorOf(frame.cue_position);
-    cue.std_m = frame.cue_std;
-  }
+  dynamics::Cue cue = CueOf(frame, model_.target.of(id_));
   agent_.Reset(frame.episode, cue);
   const auto finite = [](const auto& p) { return FiniteVector(p); };
   if (cue.target >= 0 && frame.cues.size() == static_cast<std::size_t>(model_.target.count) &&
@@ -232,17 +225,12 @@ void AgentNode::Decide() {
     StartEpisode(*frame_);
   }
   pending_.Give(start_, stamp, &agent_);
-  dynamics::NavState nav = NavOf(frame_->pose, frame_->twist, stamp - start_);
-  nav.position_std_m = frame_->position_std;
-  nav.heading_std_rad = frame_->heading_std;
-  if (frame_->fix_std > 0.0) {
-    nav.fix_stamp = NsOf(frame_->fix_stamp) - start_;
-    nav.p_WF = VectorOf(frame_->fix_position);
-    nav.fix_std_m = frame_->fix_std;
-  }
-  agent_.Observe(nav, observation_.data());
+  agent_.Observe(NavOf(*frame_, start_), observation_.data());
+  drew_ = false;
   if (decider_.observes()) {
     decider_.Act(id_, observation_.data(), action_);
+  } else if (explore_ && decider_.entities != nullptr) {
+    drew_ = decider_.Explore(frame_->seed, frame_->step, agent_.view(), &drawn_, action_);
   } else {
     decider_.Act(agent_.view(), action_);
   }
@@ -286,6 +274,7 @@ void AgentNode::ReportDecision() {
   unreported_ = false;
   task_.Publish();
   step_.Publish();
+  if (drew_) entity_step_.Publish();
 }
 
 bool AgentNode::SetVelocity(geometry_msgs::TwistStamped* message) const {
@@ -319,6 +308,18 @@ bool AgentNode::SetStep(auv_msgs::AgentStep* message) const {
   message->log_probability = log_probability_;
   message->policy_id = policy_id_;
   message->observation_layout = agent::kLayoutVersion;
+  return true;
+}
+
+bool AgentNode::SetEntityStep(auv_msgs::EntityStep* message) const {
+  if (!drew_ || unreported_) return false;
+  message->header.stamp = decided_->header.stamp;
+  message->header.frame_id = body_frame_;
+  message->episode = decided_->episode;
+  message->step = decided_->step;
+  message->agent = static_cast<std::uint32_t>(id_);
+  message->policy_id = policy_id_;
+  SetDecision(drawn_, agent::CommandSize(decider_.entities->action()), message);
   return true;
 }
 

@@ -3,6 +3,7 @@
 #include <auv_msgs/AcousticPacket.h>
 #include <auv_msgs/AcousticReception.h>
 #include <auv_msgs/AgentStep.h>
+#include <auv_msgs/EntityStep.h>
 #include <auv_msgs/LoadPolicy.h>
 #include <auv_msgs/SensorFrame.h>
 #include <auv_msgs/TaskState.h>
@@ -63,6 +64,8 @@ class AgentNode {
   bool SetVelocity(geometry_msgs::TwistStamped* message) const;
   bool SetTask(auv_msgs::TaskState* message) const;
   bool SetStep(auv_msgs::AgentStep* message) const;
+  /// The last command that was drawn with a policy over entities.
+  bool SetEntityStep(auv_msgs::EntityStep* message) const;
   void Report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   agent::AgentModel model_;
@@ -77,6 +80,8 @@ class AgentNode {
   bool commands_velocity_, commands_wrench_;
   agent::AgentOutput output_;  ///< of the last decision
   float log_probability_ = 0.0F;
+  agent::EntityDecision drawn_;              ///< the last drawn command of a policy over entities
+  bool drew_ = false;                        ///< the last decision drew it
   auv_msgs::SensorFrame::ConstPtr decided_;  ///< sensor frame of the last decision
   bool unreported_ = false;                  ///< the last decision is not reported yet
   std::string policy_id_;                    ///< policy of the last decision
@@ -99,6 +104,7 @@ class AgentNode {
   OnDemand<geometry_msgs::TwistStamped> velocity_;
   OnDemand<auv_msgs::TaskState> task_;
   OnDemand<auv_msgs::AgentStep> step_;
+  OnDemand<auv_msgs::EntityStep> entity_step_;
   std::vector<ros::Subscriber> subscribers_;
   ros::ServiceServer load_policy_;
 

@@ -8,7 +8,7 @@
 #include <map>
 
 #include "auv_common/time.hpp"
-#include "swarm_frame.hpp"
+#include "stg_env/nodes/swarm_frame.hpp"
 
 namespace stg::nodes {
 

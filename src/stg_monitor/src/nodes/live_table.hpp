@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "episode_judge.hpp"
+#include "stg_env/nodes/episode_judge.hpp"
 
 namespace stg::nodes {
 

@@ -12,8 +12,8 @@
 #include "auv_common/step/step_window.hpp"
 #include "display.hpp"
 #include "live_table.hpp"
+#include "stg_env/nodes/swarm_frame.hpp"
 #include "stg_env/scenario/scenario.hpp"
-#include "swarm_frame.hpp"
 
 namespace stg::nodes {
 

@@ -10,9 +10,6 @@
 namespace stg::learn {
 namespace {
 
-constexpr std::size_t kOpenEpisodes = 2;
-constexpr std::size_t kRemembered = 1000;  // number of taken episodes that are remembered
-
 /// With this comparison, NaN equals itself, and the two zeros differ.
 template <class T>
 bool SameBits(T a, T b) {
@@ -90,18 +87,13 @@ EpisodeAssembler::EpisodeAssembler(const RunConfig& run, std::string source)
     : agents_(run.agents), episode_steps_(run.time.episode_steps), source_(std::move(source)) {}
 
 RecordedEpisode* EpisodeAssembler::At(std::uint32_t episode, TimeNs start) {
-  if (taken_.count({start, episode}) > 0) {
-    ++late_;
-    return nullptr;
-  }
-  RecordedEpisode& e = episodes_[{start, episode}];
-  e.heard = ++heard_;
-  if (e.steps.empty()) {
+  return open_.At(episode, start, [&] {
+    RecordedEpisode e;
     e.number = episode;
     e.source = source_;
     e.steps.resize(static_cast<std::size_t>(agents_));
-  }
-  return &e;
+    return e;
+  });
 }
 
 void EpisodeAssembler::Add(std::uint32_t episode, TimeNs start, std::uint32_t step, int agent,
@@ -133,38 +125,7 @@ void EpisodeAssembler::Add(std::uint32_t episode, TimeNs start, std::uint32_t st
 }
 
 std::vector<RecordedEpisode> EpisodeAssembler::TakeDone() {
-  std::vector<std::uint64_t> heard;
-  for (const auto& [key, e] : episodes_) {
-    if (!e.Complete(episode_steps_)) heard.push_back(e.heard);
-  }
-  std::sort(heard.rbegin(), heard.rend());
-  const std::uint64_t open_since = heard.size() > kOpenEpisodes ? heard[kOpenEpisodes - 1] : 0;
-  std::vector<RecordedEpisode> done;
-  for (auto it = episodes_.begin(); it != episodes_.end();) {
-    if (it->second.heard < open_since || it->second.Complete(episode_steps_)) {
-      done.push_back(std::move(it->second));
-      Forget(it->first);
-      it = episodes_.erase(it);
-    } else {
-      ++it;
-    }
-  }
-  return done;
-}
-
-void EpisodeAssembler::Forget(const Key& key) {
-  taken_.insert(key);
-  taken_in_order_.push_back(key);
-  if (taken_in_order_.size() <= kRemembered) return;
-  taken_.erase(taken_in_order_.front());
-  taken_in_order_.pop_front();
-}
-
-std::vector<RecordedEpisode> EpisodeAssembler::TakeAll() {
-  std::vector<RecordedEpisode> all;
-  for (auto& [key, episode] : episodes_) all.push_back(std::move(episode));
-  episodes_.clear();
-  return all;
+  return open_.TakeDone([this](const RecordedEpisode& e) { return e.Complete(episode_steps_); });
 }
 
 EpisodeChecker::EpisodeChecker(const RunConfig& run, const agent::ObservationConfig& observation,

@@ -3,6 +3,7 @@
 #include "auv_common/error.hpp"
 #include "marl_trainer/learn/options.hpp"
 #include "marl_trainer/learn/swarm/network/entity_actor.hpp"
+#include "marl_trainer/learn/swarm/swarm_reward.hpp"
 
 namespace stg::learn {
 namespace {
@@ -122,26 +123,13 @@ std::vector<SwarmTask> FieldMixture(const std::string& folder, const std::string
     const Waters waters = WatersAt(k % kWatersCount, config.free_assignment);
     const std::string steps = std::to_string(config.episode_steps * waters.longer);
     const std::string name = waters.scenario != nullptr ? waters.scenario : scenario;
-    const std::vector<std::string> overrides = {
+    std::vector<std::string> overrides = {
         "agents=" + std::to_string(waters.agents),
         "target.count=" + std::to_string(waters.targets),
         "time.episode_steps=" + steps,
         "time.tail_steps=" + steps,
-        // Rewards are given near the band. The shaping covers the way to it.
-        "reward.error_max_m=40.0",
-        "reward.w_band=1.0",
-        "reward.w_progress=0.0",
-        "reward.w_closing=0.0",
-        "reward.w_reacquire=0.0",
-        "reward.w_too_close=2.0",
-        "reward.weights.semantic=0.3",
-        "reward.weights.control_cost=0.0",
-        "reward.weights.separation=1.5",
-        "reward.separation_distance_m=40.0",
-        "reward.terms.estimate.weight=0.2",
-        "reward.terms.spread.weight=0.5",
-        "reward.total_limit=10.0",
     };
+    overrides.insert(overrides.end(), SwarmRewardKeys().begin(), SwarmRewardKeys().end());
     mixture.push_back({name + "/" + waters.condition + "/" + std::to_string(waters.agents),
                        LoadNamedScenario(folder, name, waters.condition, overrides)});
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "auv_common/error.hpp"
 #include "auv_common/numbers/random.hpp"
@@ -87,12 +88,18 @@ void SwarmLearner::Normalise(const std::vector<SwarmRollout>& rollouts) {
       count += 1.0;
     }
   }
+  advantage_mean_ = static_cast<float>(a / count);
+  const double spread = std::sqrt(std::max(aa / count - a / count * a / count, 0.0));
+  advantage_scale_ = static_cast<float>(1.0 / (spread + 1e-6));
   seen_ += count;
   const double share = count / std::min(seen_, std::max(config_.value_memory, count));
   const double old_mean = mean_, old_std = std_;
   mean_ += share * (sum / count - mean_);
   square_ += share * (square / count - square_);
   std_ = std::sqrt(std::max(square_ - mean_ * mean_, 1e-4));
+  // The predictions of an untrained critic are not worth keeping. Beside a trained actor, they then
+  // begin at the mean of the returns.
+  if (std::exchange(without_critic_, false)) return;
   // Changes the last layer so that the critic's predictions stay the same.
   const agent::PoolBlocks::Layer& head = critic_.blocks().head;
   float* w = critic_numbers_.data() + head.weight.offset;
@@ -101,9 +108,6 @@ void SwarmLearner::Normalise(const std::vector<SwarmRollout>& rollouts) {
   }
   float* b = critic_numbers_.data() + head.bias.offset;
   *b = static_cast<float>((static_cast<double>(*b) * old_std + old_mean - mean_) / std_);
-  advantage_mean_ = static_cast<float>(a / count);
-  const double spread = std::sqrt(std::max(aa / count - a / count * a / count, 0.0));
-  advantage_scale_ = static_cast<float>(1.0 / (spread + 1e-6));
 }
 
 void SwarmLearner::ActorLoss(const SwarmRollout& r, std::size_t row, int at, double entropy,
@@ -190,7 +194,7 @@ void SwarmLearner::Gradient(const std::vector<SwarmRollout>& rollouts, const std
 
 SwarmLearner::Report SwarmLearner::Update(std::vector<SwarmRollout>* rollouts,
                                           std::uint32_t collection, double progress,
-                                          WorkerPool* pool) {
+                                          WorkerPool* pool, Learns learns) {
   std::vector<Part> scratch;
   for (int w = 0; w < pool->workers(); ++w) scratch.push_back(parts_.front());
   pool->Run(static_cast<int>(rollouts->size()), [&](int k, int worker) {
@@ -215,8 +219,9 @@ SwarmLearner::Report SwarmLearner::Update(std::vector<SwarmRollout>* rollouts,
   const std::size_t batches =
       std::max<std::size_t>(1, (count + static_cast<std::size_t>(config_.minibatch) / 2) /
                                    static_cast<std::size_t>(config_.minibatch));
-  const double rate =
+  const double planned =
       config_.learning_rate + (config_.last_learning_rate - config_.learning_rate) * progress;
+  const double rate = learns == Learns::kBoth ? planned : SwarmConfig().learning_rate;
   const double entropy = config_.entropy + (config_.last_entropy - config_.entropy) * progress;
   double kl = 0.0, clipped = 0.0, value_loss = 0.0, norm = 0.0, disorder = 0.0;
   int updates = 0, epochs = 0;
@@ -259,7 +264,9 @@ SwarmLearner::Report SwarmLearner::Update(std::vector<SwarmRollout>* rollouts,
                    gradient->data(), numbers->data());
         return length;
       };
-      norm += step(&parts_[0].actor_gradient, &actor_numbers_, &actor_adam_);
+      if (learns == Learns::kBoth) {
+        norm += step(&parts_[0].actor_gradient, &actor_numbers_, &actor_adam_);
+      }
       step(&parts_[0].critic_gradient, &critic_numbers_, &critic_adam_);
       for (auto s = actor_numbers_.end() - size_; s != actor_numbers_.end(); ++s) {
         *s = std::clamp(*s, static_cast<float>(config_.least_log_std),
@@ -305,6 +312,21 @@ void SwarmLearner::Save(Archive* archive) const {
   actor_adam_.Save("actor_adam", archive);
   critic_adam_.Save("critic_adam", archive);
   archive->Put("returns", std::vector<double>{mean_, square_, seen_, std_});
+}
+
+void SwarmLearner::StartFrom(const agent::EntityPolicy& policy) {
+  const agent::EntityPolicy::Parameters& p = policy.parameters();
+  if (p.network != config_.network || p.action != config_.action) {
+    throw UserError("policy '" + p.metadata.id + "': has the network '" +
+                    agent::EntityNetworkName(p.network) + "' and the action '" +
+                    agent::EntityActionName(p.action) + "', not '" +
+                    agent::EntityNetworkName(config_.network) + "' and '" +
+                    agent::EntityActionName(config_.action) + "'");
+  }
+  std::copy(p.numbers.begin(), p.numbers.end(), actor_numbers_.begin());
+  std::copy(p.log_std.begin(), p.log_std.end(), actor_numbers_.end() - size_);
+  KeepBlind(&actor_numbers_);
+  without_critic_ = true;
 }
 
 void SwarmLearner::SetDeviation(double log_std) {

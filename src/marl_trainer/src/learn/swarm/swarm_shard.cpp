@@ -6,16 +6,14 @@
 
 #include "auv_common/error.hpp"
 #include "auv_common/numbers/random.hpp"
-#include "marl_trainer/learn/swarm/swarm_truth.hpp"
 #include "marl_trainer/learn/train_config.hpp"
+#include "stg_agent/entities/entity_draw.hpp"
 #include "stg_agent/entities/entity_pilot.hpp"
-#include "stg_agent/policy/gaussian.hpp"
 
 namespace stg::learn {
 namespace {
 
 constexpr std::uint32_t kMostAgents = 64;
-constexpr double kEnough = 2.0;  ///< enough AUVs in the band of a target: two ranges locate it
 
 env::VectorEnvOptions ShardOptions(const SwarmConfig& config, int first_env, int envs,
                                    int total_envs) {
@@ -28,22 +26,7 @@ env::VectorEnvOptions ShardOptions(const SwarmConfig& config, int first_env, int
   return o;
 }
 
-/// Number of decisions during a command.
-int DecisionsOf(const RunConfig& run) {
-  return static_cast<int>(std::lround(agent::kCommandPeriod_s / run.decision_dt_s()));
-}
-
 }  // namespace
-
-double ShareOfBand(bool chosen, int inside) {
-  return chosen ? std::min(1.0, kEnough / inside) : 1.0;
-}
-
-double ShareCovered(const std::vector<int>& inside) {
-  double sum = 0.0;
-  for (const int count : inside) sum += std::min(1.0, count / kEnough);
-  return sum / static_cast<double>(inside.size());
-}
 
 SwarmRollout::SwarmRollout()
     : actor(RowSizes(agent::EntityGraphSpec(1))),
@@ -56,6 +39,7 @@ SwarmShard::SwarmShard(const env::EnvFactory& make_env, const SwarmConfig& confi
     : config_(config),
       first_env_(first_env),
       env_(make_env.Make(ShardOptions(config, first_env, envs, total_envs))),
+      reward_(config, env_.scenario().judge()),
       memory_(env_.MakeMemory()),
       entities_(static_cast<std::size_t>(envs * env_.agents())),
       now_(RowSizes(agent::EntityGraphSpec(1))),
@@ -67,7 +51,7 @@ SwarmShard::SwarmShard(const env::EnvFactory& make_env, const SwarmConfig& confi
         "': an entity policy uses only an AUV's own knowledge, so mode must be acoustic");
   }
   const int blocks = std::max(1, total_envs / env::kMixBlock);
-  if (config.episode_steps % (blocks * DecisionsOf(scenario.run)) != 0) {
+  if (config.episode_steps % (blocks * agent::DecisionsPerCommand(scenario.run)) != 0) {
     throw UserError("episode_steps: " + std::to_string(config.episode_steps) +
                     " decisions are not a whole number of commands for " + std::to_string(blocks) +
                     " blocks of environments");
@@ -77,14 +61,20 @@ SwarmShard::SwarmShard(const env::EnvFactory& make_env, const SwarmConfig& confi
   sums_.resize(rows);
   potential_.resize(rows);
   next_potential_.resize(rows);
+  outcomes_.resize(static_cast<std::size_t>(env_.agents()));
   RestartAt(0);
 }
 
 void SwarmShard::RestartAt(std::uint64_t k) { env_.RestartAt(k, memory_.arrays()); }
 
-double SwarmShard::Potential(int e, int i) const {
+Outcome SwarmShard::OutcomeOf(int e, int i) const {
   const task::Tracking<double> t = env_.tracking(e, i);
-  return -config_.shaping * t.error / 100.0;
+  return {memory_.rewards[static_cast<std::size_t>(e * env_.agents() + i)], t.distance, t.error,
+          env_.followed(e, i)};
+}
+
+float SwarmShard::Potential(int e, int i) const {
+  return static_cast<float>(reward_.Potential(OutcomeOf(e, i)));
 }
 
 void SwarmShard::Observe(const SwarmActor& actor, std::uint32_t collection, int step,
@@ -92,11 +82,12 @@ void SwarmShard::Observe(const SwarmActor& actor, std::uint32_t collection, int 
   const int n = env_.agents(), size = actor.network.outputs();
   now_.Clear();
   for (int e = 0; e < env_.envs(); ++e) {
+    ReadTruth(env_, e, &truth_);
     for (int i = 0; i < n; ++i) {
       agent::Entities& entities = entities_[static_cast<std::size_t>(e * n + i)];
       agent::BuildEntities(env_.agent(e, i), &entities);
       now_.Add(agent::EntityGraphRows(entities));
-      AddCriticRow(env_, e, i, entities, &out->critic);
+      AddCriticRow(truth_, i, entities, &out->critic);
     }
   }
   actor.network.Forward(actor.parameters, now_, &workspace_);
@@ -107,25 +98,17 @@ void SwarmShard::Observe(const SwarmActor& actor, std::uint32_t collection, int 
     Random random(TrainingSeed(config_.seed), Stream::kPolicy, collection,
                   static_cast<std::uint32_t>(step), key);
     const agent::AgentView view = env_.agent(row / n, row % n);
+    const int first = workspace_.first[static_cast<std::size_t>(row)];
+    agent::CommandDistribution of;
+    of.chooses = actor.network.chooses();
+    of.choices = workspace_.first[static_cast<std::size_t>(row) + 1] - first;
+    of.logits = workspace_.logits.data() + first;
+    of.means = workspace_.means.data() + static_cast<std::ptrdiff_t>(first) * size;
+    of.log_std = actor.log_std;
+    of.size = size;
     int choice = 0;
-    float log_prob = 0.0F;
-    if (actor.network.chooses()) {
-      const int count = LogShares(workspace_, row, &log_shares_);
-      double left = random.Uniform();
-      while (choice + 1 < count && (left -= std::exp(static_cast<double>(
-                                        log_shares_[static_cast<std::size_t>(choice)]))) >= 0.0) {
-        ++choice;
-      }
-      log_prob = log_shares_[static_cast<std::size_t>(choice)];
-    }
-    const float* mean =
-        workspace_.means.data() +
-        static_cast<std::ptrdiff_t>(workspace_.first[static_cast<std::size_t>(row)] + choice) *
-            size;
     float command[agent::kCommandNumbers];
-    std::copy(mean, mean + size, command);
-    out->log_prob.push_back(log_prob +
-                            agent::SampleGaussian(actor.log_std, size, &random, command));
+    out->log_prob.push_back(agent::DrawCommand(of, &random, &choice, command));
     out->commands.insert(out->commands.end(), command, command + size);
     out->choices.push_back(choice);
     agent::TakeCommand(view, config_.action, command);
@@ -136,7 +119,8 @@ void SwarmShard::Observe(const SwarmActor& actor, std::uint32_t collection, int 
 }
 
 void SwarmShard::FlyOn(int step, SwarmRollout* out) {
-  const int n = env_.agents(), size = env_.action_size(), period = DecisionsOf(env_.scenario().run);
+  const int n = env_.agents(), size = env_.action_size(),
+            period = agent::DecisionsPerCommand(env_.scenario().run);
   std::fill(sums_.begin(), sums_.end(), 0.0F);
   for (int d = 0; d < period; ++d) {
     for (int e = 0; e < env_.envs(); ++e) {
@@ -151,10 +135,11 @@ void SwarmShard::FlyOn(int step, SwarmRollout* out) {
       // earlier.
       last_.Clear();
       for (int e = 0; e < env_.envs(); ++e) {
+        ReadTruth(env_, e, &truth_);
         for (int i = 0; i < n; ++i) {
           const auto row = static_cast<std::size_t>(e * n + i);
-          AddCriticRow(env_, e, i, entities_[row], &last_);
-          next_potential_[row] = static_cast<float>(Potential(e, i));
+          AddCriticRow(truth_, i, entities_[row], &last_);
+          next_potential_[row] = Potential(e, i);
         }
       }
     }
@@ -173,7 +158,7 @@ void SwarmShard::FlyOn(int step, SwarmRollout* out) {
       out->done.push_back(ended ? 1 : 0);
       out->final_of.push_back(ended ? out->finals.rows() : -1);
       if (ended) out->finals.Add(last_, static_cast<int>(row));
-      if (!ended) next_potential_[row] = static_cast<float>(Potential(e, i));
+      if (!ended) next_potential_[row] = Potential(e, i);
       out->own.push_back(sums_[row] / static_cast<float>(period));
     }
   }
@@ -182,51 +167,20 @@ void SwarmShard::FlyOn(int step, SwarmRollout* out) {
 
 void SwarmShard::Pay() {
   const int n = env_.agents();
-  const config::Interval& band = env_.scenario().reward.band_m;
-  const bool free = env_.scenario().agent.task.free();
-  std::vector<int> inside(static_cast<std::size_t>(env_.scenario().world.target.count));
-  const auto is_inside = [&](int e, int i) {
-    const double distance = env_.tracking(e, i).distance;
-    return distance >= band.lo && distance <= band.hi;
-  };
   for (int e = 0; e < env_.envs(); ++e) {
-    std::fill(inside.begin(), inside.end(), 0);
-    for (int i = 0; i < n; ++i) {
-      if (is_inside(e, i)) ++inside[static_cast<std::size_t>(env_.followed(e, i))];
-    }
-    const double covered = free ? ShareCovered(inside) : 0.0;
-    for (int i = 0; i < n; ++i) {
-      const auto row = static_cast<std::size_t>(e * n + i);
-      sums_[row] += memory_.rewards[row] + static_cast<float>(config_.band * covered);
-      if (!is_inside(e, i)) continue;
-      const int count = inside[static_cast<std::size_t>(env_.followed(e, i))];
-      sums_[row] += static_cast<float>(config_.band * ShareOfBand(free, count));
-    }
+    for (int i = 0; i < n; ++i) outcomes_[static_cast<std::size_t>(i)] = OutcomeOf(e, i);
+    reward_.Add(outcomes_.data(), sums_.data() + static_cast<std::ptrdiff_t>(e * n));
   }
 }
 
 void SwarmShard::Reward(int step, SwarmRollout* out) const {
   const int n = env_.agents();
-  const auto own_share = static_cast<float>(config_.own_reward);
-  const auto gamma = static_cast<float>(config_.gamma);
   const float* own = out->own.data() + static_cast<std::ptrdiff_t>(step) * env_.envs() * n;
-  const dynamics::TargetConfig& targets = env_.scenario().world.target;
-  // AUVs that choose their targets share all of them.
-  const bool free = env_.scenario().agent.task.free();
   for (int e = 0; e < env_.envs(); ++e) {
-    for (int i = 0; i < n; ++i) {
-      float sum = 0.0F;
-      int mates = 0;
-      for (int j = 0; j < n; ++j) {
-        if (!free && targets.of(j) != targets.of(i)) continue;
-        sum += own[e * n + j];
-        ++mates;
-      }
-      const auto row = static_cast<std::size_t>(e * n + i);
-      out->rewards.push_back(own_share * own[row] +
-                             (1.0F - own_share) * sum / static_cast<float>(mates) +
-                             gamma * next_potential_[row] - potential_[row]);
-    }
+    const std::ptrdiff_t first = e * n;
+    out->rewards.resize(out->rewards.size() + static_cast<std::size_t>(n));
+    reward_.Share(own + first, potential_.data() + first, next_potential_.data() + first,
+                  out->rewards.data() + out->rewards.size() - n);
   }
 }
 
@@ -239,17 +193,18 @@ void SwarmShard::Collect(std::uint32_t collection, const SwarmActor& actor, Swar
   for (int t = 0; t < config_.horizon; ++t) {
     for (int e = 0; e < env_.envs(); ++e) {
       for (int i = 0; i < n; ++i) {
-        potential_[static_cast<std::size_t>(e * n + i)] = static_cast<float>(Potential(e, i));
+        potential_[static_cast<std::size_t>(e * n + i)] = Potential(e, i);
       }
     }
     Observe(actor, collection, t, out);
     FlyOn(t, out);
   }
   for (int e = 0; e < env_.envs(); ++e) {
+    ReadTruth(env_, e, &truth_);
     for (int i = 0; i < n; ++i) {
       agent::Entities& entities = entities_[static_cast<std::size_t>(e * n + i)];
       agent::BuildEntities(env_.agent(e, i), &entities);
-      AddCriticRow(env_, e, i, entities, &out->next);
+      AddCriticRow(truth_, i, entities, &out->next);
     }
   }
 }

@@ -30,21 +30,40 @@ agent::PoolSpec SwarmCriticSpec() {
   return spec;
 }
 
-void AddCriticRow(const env::VectorEnv& env, int e, int i, const agent::Entities& entities,
-                  PackedRows* rows) {
+void ReadTruth(const env::VectorEnv& env, int e, SwarmTruth* truth) {
   const Scenario& s = env.scenario(e);
-  const int target = env.followed(e, i);
-  const double desired = s.agent.task.desired_distance_m;
-  const dynamics::VehicleState<double> own = env.vehicle(e, i);
-  const dynamics::TargetState<double> goal = env.target(e, target);
-  const Vec3<double> r = goal.p_WT - own.p_WB;
+  truth->desired_m = s.agent.task.desired_distance_m;
+  truth->p_WB.clear();
+  truth->v_WB.clear();
+  truth->targets.clear();
+  truth->followed.clear();
+  truth->r_BT_W.clear();
+  for (int k = 0; k < s.world.target.count; ++k) truth->targets.push_back(env.target(e, k));
+  for (int i = 0; i < env.agents(); ++i) {
+    const dynamics::VehicleState<double> vehicle = env.vehicle(e, i);
+    truth->p_WB.push_back(vehicle.p_WB);
+    truth->v_WB.push_back(vehicle.v_WB);
+    truth->followed.push_back(env.followed(e, i));
+    truth->r_BT_W.push_back(env.knowledge(e, i).r_BT_W);
+  }
+}
+
+void AddCriticRow(const SwarmTruth& truth, int i, const agent::Entities& entities,
+                  PackedRows* rows) {
+  const auto u = static_cast<std::size_t>(i);
+  const int target = truth.followed[u];
+  const double desired = truth.desired_m;
+  const Vec3<double>& p_WB = truth.p_WB[u];
+  const Vec3<double>& v_WB = truth.v_WB[u];
+  const dynamics::TargetState<double>& goal = truth.targets[static_cast<std::size_t>(target)];
+  const Vec3<double> r = goal.p_WT - p_WB;
   const double level = std::max(std::hypot(r.x, r.y), 1e-6), distance = Norm(r);
   const double lx = r.x / level, ly = r.y / level;
   const auto along = [&](const Vec3<double>& v) { return v.x * lx + v.y * ly; };
   const auto across = [&](const Vec3<double>& v) { return v.y * lx - v.x * ly; };
-  const double speed = std::hypot(own.v_WB.x, own.v_WB.y);
-  const double c = speed > 1e-6 ? own.v_WB.x / speed : 1.0;
-  const double n = speed > 1e-6 ? own.v_WB.y / speed : 0.0;
+  const double speed = std::hypot(v_WB.x, v_WB.y);
+  const double c = speed > 1e-6 ? v_WB.x / speed : 1.0;
+  const double n = speed > 1e-6 ? v_WB.y / speed : 0.0;
   const auto ahead = [&](const Vec3<double>& v) { return c * v.x + n * v.y; };
   const auto aport = [&](const Vec3<double>& v) { return c * v.y - n * v.x; };
 
@@ -52,7 +71,7 @@ void AddCriticRow(const env::VectorEnv& env, int e, int i, const agent::Entities
   std::copy(entities.self, entities.self + agent::kSelfNumbers, self);
   CriticRow extra(self + agent::kSelfNumbers);
   const bool known = entities.targets > 0;
-  const Vec3<double> error = known ? env.knowledge(e, i).r_BT_W - r : Vec3<double>{};
+  const Vec3<double> error = known ? truth.r_BT_W[u] - r : Vec3<double>{};
   extra.Put(along(error) / 60.0).Put(across(error) / 60.0);
   extra.Put(known ? static_cast<double>(agent::DeviationScale(Norm(error))) : 3.0);
   for (const int k : {11, 12, 21, 24, 25, 29}) {
@@ -66,15 +85,14 @@ void AddCriticRow(const env::VectorEnv& env, int e, int i, const agent::Entities
   g.Put(static_cast<double>(agent::BandScale(distance, desired)));
   g.Put(static_cast<double>(agent::MiddleScale(distance, desired)));
   g.Put(r.z / 40.0).Put(along(goal.v_WT) / kSpeed).Put(across(goal.v_WT) / kSpeed);
-  g.Put(along(own.v_WB) / kSpeed).Put(across(own.v_WB) / kSpeed);
-  g.Put((across(goal.v_WT) - across(own.v_WB)) / std::max(level, 1.0) * 60.0);
+  g.Put(along(v_WB) / kSpeed).Put(across(v_WB) / kSpeed);
+  g.Put((across(goal.v_WT) - across(v_WB)) / std::max(level, 1.0) * 60.0);
 
   float others[64][kCriticOther];
   int count = 0;
-  for (int j = 0; j < env.agents() && count < 64; ++j) {
-    if (j == i) continue;
-    const dynamics::VehicleState<double> mate = env.vehicle(e, j);
-    const Vec3<double> d = mate.p_WB - own.p_WB, w = mate.v_WB - own.v_WB, q = d - r;
+  for (std::size_t j = 0; j < truth.p_WB.size() && count < 64; ++j) {
+    if (j == u) continue;
+    const Vec3<double> d = truth.p_WB[j] - p_WB, w = truth.v_WB[j] - v_WB, q = d - r;
     const double flat = std::max(std::hypot(d.x, d.y), 1e-6), apart = Norm(d), far = Norm(q);
     const double both = std::max(std::hypot(q.x, q.y) * level, 1e-9);
     CriticRow o(others[count++]);
@@ -84,7 +102,7 @@ void AddCriticRow(const env::VectorEnv& env, int e, int i, const agent::Entities
     o.Put(static_cast<double>(agent::FarScale(far)));
     o.Put(static_cast<double>(agent::BandScale(far, desired)));
     o.Put(-(q.x * r.x + q.y * r.y) / both).Put((q.x * r.y - q.y * r.x) / both);
-    o.Put(env.followed(e, j) == target ? 1.0 : 0.0);
+    o.Put(truth.followed[j] == target ? 1.0 : 0.0);
   }
   const agent::PoolRows sets[2] = {{goals, 1, kCriticTarget}, {others[0], count, kCriticOther}};
   rows->Add(self, nullptr, sets);

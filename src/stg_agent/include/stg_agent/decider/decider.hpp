@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "stg_agent/controllers/controller.hpp"
-#include "stg_agent/entities/entity_policy.hpp"
+#include "stg_agent/entities/entity_draw.hpp"
 #include "stg_agent/policy/policy.hpp"
 
 namespace stg::agent {
@@ -28,9 +28,17 @@ struct Decider {
   void Act(const AgentView& agent, float* action) const;
 
   /// Replaces the mean by a sample of the policy's Gaussian, a function of (seed, step, id) only;
-  /// returns its natural log density. Other deciders do not explore: returns 0 and keeps the mean.
+  /// returns its natural log density. Built-in controllers do not explore: returns 0 and keeps the
+  /// mean.
   /// @param seed seed of the episode; the same seed gives the same samples in any episode
   float Explore(std::uint64_t seed, std::uint32_t step, int id, float* action) const;
+
+  /// The action of the policy over entities that explores. The draws are a function of (seed,
+  /// number of the command, id) only. Returns true if the AUV has a new command. Only with
+  /// `entities`.
+  /// @param decision the new command, otherwise unchanged
+  bool Explore(std::uint64_t seed, std::uint32_t step, const AgentView& agent,
+               EntityDecision* decision, float* action) const;
 
   /// The controller's name, or the identity in the policy file of AUV `id`.
   const std::string& IdOf(int id) const;

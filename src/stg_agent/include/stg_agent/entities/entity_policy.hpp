@@ -71,6 +71,12 @@ class EntityPolicy {
   /// `commands` [T + 1, n] and `choices` [1, T + 1], the largest of which counts.
   void SaveOnnx(const std::string& path) const;
 
+  /// The logit and the command of every choice: of each target, then to search. `pool` has one
+  /// choice, whose logit is 0.
+  /// @param logits [kTargetRows + 1], commands [kTargetRows + 1, CommandSize], in [-1, 1]
+  /// Returns the number of choices.
+  int Choices(const Entities& entities, float* logits, float* commands) const;
+  /// The command of the largest logit.
   /// @param command [CommandSize], in [-1, 1]
   /// Returns the row of the target that is chosen, or their number: to search. Of `pool` always 0.
   int Command(const Entities& entities, float* command) const;

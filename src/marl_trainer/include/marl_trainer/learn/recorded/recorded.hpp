@@ -2,14 +2,12 @@
 
 #include <array>
 #include <cstdint>
-#include <deque>
 #include <map>
-#include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "auv_dynamics/measurements.hpp"
+#include "marl_trainer/learn/recorded/open_episodes.hpp"
 #include "stg_agent/policy/policy.hpp"
 #include "stg_env/scenario/scenario.hpp"
 
@@ -68,8 +66,7 @@ struct RecordedEpisode {
   bool Complete(int episode_steps) const;
 };
 
-/// Assembles episodes from the messages of one source. Number and start time identify an episode,
-/// so two runs in one bag do not mix.
+/// Assembles episodes from the messages of one source.
 class EpisodeAssembler {
  public:
   EpisodeAssembler(const RunConfig& run, std::string source);
@@ -78,28 +75,18 @@ class EpisodeAssembler {
   void Add(std::uint32_t episode, TimeNs start, std::uint32_t step, int agent, AgentRecord record);
   void Add(std::uint32_t episode, TimeNs start, std::uint32_t step, RewardRecord record);
 
-  /// Takes the complete episodes, oldest first. Of the others it takes all except the two with the
-  /// latest messages, whatever their stamps are, because no more messages are expected for them.
-  /// Later messages about a taken episode are ignored.
+  /// See OpenEpisodes.
   std::vector<RecordedEpisode> TakeDone();
-  /// Takes all episodes, because the source has ended.
-  std::vector<RecordedEpisode> TakeAll();
-
-  /// Number of records of episodes that had been taken already.
-  std::uint64_t late() const { return late_; }
+  std::vector<RecordedEpisode> TakeAll() { return open_.TakeAll(); }
+  std::uint64_t late() const { return open_.late(); }
 
  private:
-  using Key = std::pair<TimeNs, std::uint32_t>;
   /// The episode; null: it has been taken already.
   RecordedEpisode* At(std::uint32_t episode, TimeNs start);
-  void Forget(const Key& key);
 
   const int agents_, episode_steps_;
   const std::string source_;
-  std::map<Key, RecordedEpisode> episodes_;
-  std::set<Key> taken_;
-  std::deque<Key> taken_in_order_;  ///< the same keys in order, to forget the oldest ones
-  std::uint64_t heard_ = 0, late_ = 0;
+  OpenEpisodes<RecordedEpisode> open_;
 };
 
 /// Checks episodes for on-policy learning with one policy in one scenario.

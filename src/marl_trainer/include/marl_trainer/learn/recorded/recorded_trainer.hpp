@@ -32,6 +32,7 @@ class RecordedTrainer {
     std::int64_t updates = 0, env_steps = 0;
     int episodes = 0;
     double episode_return = 0.0;  ///< sum over steps and AUVs, mean over episodes
+    bool own_reward = false;      ///< this is by a reward of the training, not the scenario's
     std::string report;           ///< numbers of the algorithm, see ReportText
     double seconds = 0.0;
   };

@@ -25,13 +25,18 @@ class SwarmLearner {
   /// Learns from one collection. @param progress done share of the training, in [0, 1]
   /// Returns its results, by name.
   using Report = std::vector<std::pair<std::string, double>>;
+  /// kCritic: the actor stays as it is, and the critic learns at the rate of an untrained one.
+  enum class Learns { kBoth, kCritic };
   Report Update(std::vector<SwarmRollout>* rollouts, std::uint32_t collection, double progress,
-                WorkerPool* pool);
+                WorkerPool* pool, Learns learns = Learns::kBoth);
 
   agent::EntityPolicy Policy(const agent::PolicyMetadata& metadata) const;
   void Save(Archive* archive) const;
   /// Throws UserError for an archive with other sizes.
   void Load(const Archive& archive);
+  /// Takes the actor and its exploration from a policy with the same network and action. The critic
+  /// stays untrained.
+  void StartFrom(const agent::EntityPolicy& policy);
   /// Sets the log standard deviation of the exploration.
   void SetDeviation(double log_std);
 
@@ -70,6 +75,7 @@ class SwarmLearner {
   AdamState actor_adam_, critic_adam_;
   double mean_ = 0.0, square_ = 1.0, seen_ = 0.0;  // moments of the returns
   double std_ = 1.0;
+  bool without_critic_ = false;  // a trained actor has an untrained critic
   float advantage_mean_ = 0.0F, advantage_scale_ = 1.0F;
   std::vector<Part> parts_;
 };

@@ -5,6 +5,8 @@
 
 #include "marl_trainer/learn/swarm/network/entity_actor.hpp"
 #include "marl_trainer/learn/swarm/swarm_config.hpp"
+#include "marl_trainer/learn/swarm/swarm_reward.hpp"
+#include "marl_trainer/learn/swarm/swarm_truth.hpp"
 #include "stg_env/env/vector_env.hpp"
 
 namespace stg::learn {
@@ -36,14 +38,6 @@ struct SwarmActor {
   const float* log_std;  ///< [command size]
 };
 
-/// Reward of a decision of one AUV in the band of a target with `inside` AUVs, as a share of the
-/// reward of an AUV alone. For targets that are chosen freely, two AUVs are enough, because two
-/// ranges locate the target; more AUVs share the reward of two.
-double ShareOfBand(bool chosen, int inside);
-/// Reward of such a decision for all AUVs: min(inside, 2) / 2, as the mean over the targets. @param
-/// inside number of AUVs in the band of each target
-double ShareCovered(const std::vector<int>& inside);
-
 /// Environments of one scenario, all with the same size of swarm, that one worker flies.
 class SwarmShard {
  public:
@@ -59,20 +53,24 @@ class SwarmShard {
  private:
   void Observe(const SwarmActor& actor, std::uint32_t collection, int step, SwarmRollout* out);
   void FlyOn(int step, SwarmRollout* out);
+  /// Of the last decision, and the distances after it.
+  Outcome OutcomeOf(int e, int i) const;
   /// Adds the reward of the last decision to sums_.
   void Pay();
   void Reward(int step, SwarmRollout* out) const;
-  double Potential(int e, int i) const;
+  float Potential(int e, int i) const;
 
   SwarmConfig config_;
   int first_env_;
   env::VectorEnv env_;
+  SwarmReward reward_;
   env::EnvMemory memory_;
   std::vector<agent::Entities> entities_;  // [envs, agents]
   std::vector<float> actions_, sums_, potential_, next_potential_;
   PackedRows now_, last_;
   ActorWorkspace workspace_;
-  std::vector<float> log_shares_;
+  SwarmTruth truth_;
+  std::vector<Outcome> outcomes_;  // [agents]
 };
 
 }  // namespace stg::learn

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "marl_trainer/learn/swarm/network/pool_batch.hpp"
 #include "stg_agent/entities/entities.hpp"
 #include "stg_env/env/vector_env.hpp"
@@ -18,9 +20,21 @@ inline constexpr int kCriticOther = 12;   ///< size of the input of every other 
 /// The network of a critic.
 agent::PoolSpec SwarmCriticSpec();
 
+/// The true state of one swarm, and what its AUVs estimate.
+struct SwarmTruth {
+  double desired_m = 0.0;                ///< desired distance to a target
+  std::vector<Vec3<double>> p_WB, v_WB;  ///< [agents]
+  std::vector<dynamics::TargetState<double>> targets;
+  std::vector<int> followed;         ///< [agents], the target that the AUV follows
+  std::vector<Vec3<double>> r_BT_W;  ///< [agents], estimated vector from the AUV to its target
+};
+
+/// The same of an environment at present.
+void ReadTruth(const env::VectorEnv& env, int e, SwarmTruth* truth);
+
 /// Appends the critic's input for AUV i.
 /// @param entities of this AUV at present
-void AddCriticRow(const env::VectorEnv& env, int e, int i, const agent::Entities& entities,
+void AddCriticRow(const SwarmTruth& truth, int i, const agent::Entities& entities,
                   PackedRows* rows);
 
 }  // namespace stg::learn

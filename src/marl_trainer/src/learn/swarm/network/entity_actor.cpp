@@ -1,7 +1,8 @@
 #include "marl_trainer/learn/swarm/network/entity_actor.hpp"
 
-#include <algorithm>
 #include <cmath>
+
+#include "stg_agent/entities/entity_draw.hpp"
 
 namespace stg::learn {
 namespace {
@@ -64,12 +65,8 @@ void EntityActor::Backward(const float* parameters, const PackedRows& x, ActorWo
 int LogShares(const ActorWorkspace& w, int row, std::vector<float>* log_shares) {
   const auto begin = static_cast<std::size_t>(w.first[static_cast<std::size_t>(row)]);
   const auto end = static_cast<std::size_t>(w.first[static_cast<std::size_t>(row) + 1]);
-  log_shares->assign(w.logits.begin() + static_cast<std::ptrdiff_t>(begin),
-                     w.logits.begin() + static_cast<std::ptrdiff_t>(end));
-  const float most = *std::max_element(log_shares->begin(), log_shares->end());
-  float sum = 0.0F;
-  for (const float l : *log_shares) sum += std::exp(l - most);
-  for (float& l : *log_shares) l -= most + std::log(sum);
+  log_shares->resize(end - begin);
+  agent::LogShares(w.logits.data() + begin, static_cast<int>(end - begin), log_shares->data());
   return static_cast<int>(end - begin);
 }
 

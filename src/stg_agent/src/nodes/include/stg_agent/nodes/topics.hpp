@@ -8,6 +8,7 @@ namespace stg::topics {
 // Of each AUV, below Auv(i).
 inline constexpr char kTaskState[] = "task_state";
 inline constexpr char kAgentStep[] = "agent_step";
+inline constexpr char kEntityStep[] = "entity_step";
 inline constexpr char kLoadPolicy[] = "load_policy";  ///< below the agent node's own name
 
 /// Of each beacon and surface craft.

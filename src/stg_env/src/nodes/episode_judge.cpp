@@ -1,4 +1,4 @@
-#include "episode_judge.hpp"
+#include "stg_env/nodes/episode_judge.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "stg_env/nodes/swarm_frame.hpp"
 #include "stg_env/task/task.hpp"
-#include "swarm_frame.hpp"
 
 namespace stg::nodes {
 

@@ -1,0 +1,116 @@
+#!/usr/bin/python3
+"""The trainer node of networks over entities: an end by a signal, a continuation, and refusals."""
+
+import os
+import pathlib
+import shutil
+import subprocess
+import threading
+import time
+import unittest
+
+import roslib.packages
+import rosnode
+import rospy
+import rostest
+
+
+class TrainField(unittest.TestCase):
+    """The run of all nodes goes on, so further trainers learn from it."""
+
+    refusals = 0
+
+    @classmethod
+    def setUpClass(cls):
+        cls.out = pathlib.Path(rospy.get_param("~out"))
+        cls.network = rospy.get_param("~network")
+        cls.policies = pathlib.Path(roslib.packages.get_pkg_dir("stg_bringup")) / "policies"
+        cls.program = roslib.packages.find_node("marl_trainer", "trainer_node")[0]
+        for there in (True, False):  # the trainer of the launch file comes, learns and ends
+            end = time.time() + 20.0
+            while ("/trainer" in rosnode.get_node_names()) != there and time.time() < end:
+                time.sleep(0.1)
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.out)
+
+    def learn(self, name, folder, *parameters):
+        """Learns until the first update, ends the node by SIGTERM and returns what it printed."""
+        with subprocess.Popen(
+            [self.program, f"__name:={name}", f"_out:={folder}", "_episodes_per_update:=1"]
+            + list(parameters),
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            universal_newlines=True,
+        ) as trainer:
+            limit = threading.Timer(30.0, trainer.kill)
+            limit.start()
+            text = ""
+            for line in trainer.stdout:
+                text += line
+                if line.startswith("update"):
+                    trainer.terminate()
+            limit.cancel()
+        self.assertEqual(trainer.returncode, 0, text)
+        self.assertRegex(text, r"trainer: stopped after [1-9]\d* updates")
+        self.assertTrue(list(folder.glob("checkpoint_*.ckpt")))
+        self.assertTrue((folder / "policy_last.onnx").exists())
+        return text
+
+    def refused(self, *parameters):
+        """Returns the message with which the node refuses to start."""
+        # A name of its own, because parameters outlive a node.
+        TrainField.refusals += 1
+        name = f"refused_{self.refusals}"
+        done = subprocess.run(
+            [self.program, f"__name:={name}", f"_out:={self.out / name}"] + list(parameters),
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            universal_newlines=True,
+            timeout=20,
+            check=False,
+            env=dict(os.environ, ROSCONSOLE_STDOUT_LINE_BUFFERED="1"),
+        )
+        self.assertEqual(done.returncode, 2, done.stdout)
+        return done.stdout
+
+    def test_1_a_signal_ends_it_and_it_goes_on_from_its_folder(self):
+        text = self.learn("continued", self.out, f"_network:={self.network}")
+        self.assertRegex(text, r"update   [2-9] ")
+        self.assertRegex(text, r"reward -?[\d.]+ kl -?[\d.]+ explained -?[\d.]+ sigma [\d.]+")
+
+    def test_2_it_starts_from_the_shipped_policy(self):
+        start = f"_start_policy:={self.policies / 'field.onnx'}"
+        text = self.learn("started", self.out / "started", start)
+        self.assertIn("-recorded-0-", text)
+
+    def test_3_what_does_not_fit_is_refused_by_name(self):
+        field = self.policies / "field.onnx"
+        medium = self.policies / "medium.onnx"
+        text = self.refused(f"_start_policy:={medium}", "_network:=pool")
+        self.assertIn("has another observation layout", text)
+        text = self.refused(f"_start_policy:={field}", "_network:=graph")
+        self.assertIn("has the network 'pool' and the action 'law5', not 'graph'", text)
+        text = self.refused(f"_start_policy:={field}", "_network:=layers")
+        self.assertIn("is a network over entities", text)
+        self.assertIn("is none of auto, layers", self.refused("_network:=tree"))
+        text = self.refused("_network:=pool", f"_bags:={self.out}")
+        self.assertIn("learns from a running graph only", text)
+        text = self.refused("_network:=pool", f"_start_policy:={self.policies}")
+        self.assertIn("holds no checkpoint of train_swarm", text)
+        text = self.refused("_network:=pool", "_algorithm:=masac")
+        self.assertIn("learns by mappo", text)
+
+    def test_4_a_policy_without_its_deviations_is_refused(self):
+        broken = self.out / "broken.onnx"
+        data = (self.policies / "field.onnx").read_bytes()
+        self.assertEqual(data.count(b"stg.log_std"), 1)
+        broken.write_bytes(data.replace(b"stg.log_std", b"stg.log_stx"))
+        text = self.refused(f"_start_policy:={broken}")
+        self.assertIn("metadata 'stg.log_std' is missing", text)
+
+
+if __name__ == "__main__":
+    rospy.init_node("train_field")
+    rostest.rosrun("marl_trainer", "train_field_refusals", TrainField)

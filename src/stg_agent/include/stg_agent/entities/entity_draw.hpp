@@ -1,0 +1,49 @@
+#pragma once
+
+#include "auv_common/numbers/random.hpp"
+#include "stg_agent/entities/entity_policy.hpp"
+
+/// Exploration with a policy over entities: a choice from its shares, and Gaussian noise (Eq. 37)
+/// on the command of this choice. Agents and the collector of a training draw with the same
+/// function.
+namespace stg::agent {
+
+/// Most choices that a policy has: each row of a target, and to search.
+inline constexpr int kMostChoices = kTargetRows + 1;
+
+/// Logarithms of the shares (softmax) of `count` logits.
+void LogShares(const float* logits, int count, float* log_shares);
+
+/// The distribution of one command.
+struct CommandDistribution {
+  bool chooses = false;            ///< false: there is one choice, and no logit is read
+  int choices = 1;                 ///< from 1 to kMostChoices
+  const float* logits = nullptr;   ///< [choices]
+  const float* means = nullptr;    ///< [choices, size]
+  const float* log_std = nullptr;  ///< [size]
+  int size = kCommandNumbers;
+};
+
+/// Draws a choice and a command. @param command [size], before any clipping
+/// Returns the natural log of their density.
+float DrawCommand(const CommandDistribution& of, Random* random, int* choice, float* command);
+
+/// A command that was drawn, for training.
+struct EntityDecision {
+  Entities entities;
+  int choice = 0;
+  float command[kCommandNumbers] = {};  ///< before any clipping
+  float log_probability = 0.0F;
+};
+
+/// Natural log of the density that a policy gives a choice and a command. @param command
+/// [CommandSize]. The choice must be one of the policy's.
+double LogDensity(const EntityPolicy& policy, const Entities& entities, int choice,
+                  const float* command);
+
+/// As Fly, but a new command is drawn. Returns true if there is a new one. It allocates nothing.
+/// @param decision the new command, otherwise unchanged
+bool FlyExploring(const EntityPolicy& policy, const AgentView& agent, Random* random,
+                  EntityDecision* decision, float* out);
+
+}  // namespace stg::agent
