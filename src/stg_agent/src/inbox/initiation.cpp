@@ -12,8 +12,8 @@ using dynamics::MeasurementKind;
 
 Initiation::Initiation(const AgentModel& model)
     : max_speed_mps_(model.target.max_speed_mps),
-      longest_(static_cast<TimeNs>(
-          1e9 * (kLooks - 1) * std::max(model.sensing.period_s, model.run.decision_dt_s()))) {}
+      longest_(static_cast<TimeNs>(1e9 * (kLooks - 1) *
+                                   std::max(model.sensing.period_s, model.run.decision_dt_s()))) {}
 
 bool Initiation::MayStart(const Detection& d) const {
   return d.kind != MeasurementKind::kBearing && !d.ambiguous;
@@ -29,8 +29,8 @@ double Initiation::Reach(const Detection& a, const Detection& b) const {
 }
 
 bool Initiation::Fits(const Detection& a, const Detection& b) const {
-  const double apart = b.kind == MeasurementKind::kRange ? std::abs(b.range_m - a.range_m)
-                                                         : Norm(b.p_WT - a.p_WT);
+  const double apart =
+      b.kind == MeasurementKind::kRange ? std::abs(b.range_m - a.range_m) : Norm(b.p_WT - a.p_WT);
   return apart <= Reach(a, b);
 }
 

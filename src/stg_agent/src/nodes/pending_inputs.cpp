@@ -26,8 +26,7 @@ void PendingInputs::Keep(const auv_msgs::TargetDetection& message, TimeNs now) {
     refused_detections_.Add(Refusals::kFrame);
   } else if (!UsableDetection(message)) {
     refused_detections_.Add(Refusals::kNotFinite);
-  } else if (!Names(message.target) ||
-             detections_.size() >= kMaxPending) {
+  } else if (!Names(message.target) || detections_.size() >= kMaxPending) {
     refused_detections_.Add(Refusals::kMalformed);
   } else if (NsOf(message.header.stamp) > now) {
     refused_detections_.Add(Refusals::kStale);

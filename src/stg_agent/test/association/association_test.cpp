@@ -89,18 +89,16 @@ TEST(Association, TheGainIsTheRatioOfTheDensities) {
   const TargetBelief b = filter->belief();
   const double level = b.p_WT.x, rise = b.p_WT.z - p_WO.z, r = std::hypot(level, rise);
   // The mean range and its second order, as docs/estimation.md has them.
-  const double along =
-      (level * level * b.P_WT.xx + rise * rise * b.P_WT.zz) / (r * r);
+  const double along = (level * level * b.P_WT.xx + rise * rise * b.P_WT.zz) / (r * r);
   const double bend = (b.P_WT.trace() - along) / (2.0 * r);
   const double variance = along + 16.0 + 2.0 * bend * bend, off = 7.0;
   const DetectionFit fit = filter->Fit(RangeFrom(p_WO, r + bend + off, 4.0), 0);
   EXPECT_TRUE(fit.started);
   EXPECT_NEAR(fit.distance2, off * off / variance, 1e-9);
   const double false_share = 1e-3;  // no detection is trusted completely
-  const double density =
-      std::exp(-0.5 * off * off / variance) / std::sqrt(2.0 * kPi * variance);
-  EXPECT_NEAR(fit.gain,
-              std::log((1.0 - false_share) * density / (false_share / s.sensing.range_m)), 1e-9);
+  const double density = std::exp(-0.5 * off * off / variance) / std::sqrt(2.0 * kPi * variance);
+  EXPECT_NEAR(fit.gain, std::log((1.0 - false_share) * density / (false_share / s.sensing.range_m)),
+              1e-9);
 }
 
 TEST(Association, AnEstimateThatIsMissingFitsNothing) {
@@ -116,7 +114,8 @@ TEST(Association, ALateDetectionIsComparedWithTheEstimateAtItsTime) {
   const AgentModel s = UnlabelledModel("position");
   const auto filter = Started(s, {0.0, 0.0, -40.0}, 5.0);
   for (int k = 1; k <= 40; ++k) {  // 1 m/s to the east
-    const dynamics::Detection d = PositionAt(k * kSecond_ns, {static_cast<double>(k), 0.0, -40.0}, 1.0);
+    const dynamics::Detection d =
+        PositionAt(k * kSecond_ns, {static_cast<double>(k), 0.0, -40.0}, 1.0);
     filter->Detect(d);
     filter->Settle(d.stamp, {});
   }

@@ -74,8 +74,8 @@ TEST(UnlabelledInput, KeepsTwoTargetsApartThatPassEachOther) {
     for (int k = 1; k <= 60; ++k) {
       std::vector<Detection> look;
       for (const Vec3<double>& p : {east(k), west(k)}) {
-        look.push_back(PointAt(
-            k * kSecond_ns, p + Vec3<double>{noise(random), noise(random), noise(random)}));
+        look.push_back(
+            PointAt(k * kSecond_ns, p + Vec3<double>{noise(random), noise(random), noise(random)}));
       }
       if (k % 2 == 0) std::swap(look[0], look[1]);
       for (const Detection& d : look) f.input.Detect(d);
@@ -160,7 +160,8 @@ TEST(UnlabelledInput, DoesNotDependOnTheOrderOfInput) {
     Detection d;
   };
   std::vector<Input> inputs;
-  for (int k = 0; k < 24; ++k) inputs.push_back({k % 3, RangeAt((k / 6) * kSecond_ns, range(random))});
+  for (int k = 0; k < 24; ++k)
+    inputs.push_back({k % 3, RangeAt((k / 6) * kSecond_ns, range(random))});
   std::vector<Vec3<double>> first;
   for (int trial = 0; trial < 5; ++trial) {
     Listener f(s);

@@ -57,8 +57,7 @@ TEST(UnlabelledFlight, TheOrderOfEstimatesHasNoEffectOnTheScores) {
     task::Following<double> f(1, 3);
     for (std::size_t k = 0; k < 3; ++k) {
       f.known[k] = 1.0;
-      f.p_WT[k] =
-          targets[static_cast<std::size_t>(order[k])].p_WT + Vec3<double>{10.0, 0.0, 15.0};
+      f.p_WT[k] = targets[static_cast<std::size_t>(order[k])].p_WT + Vec3<double>{10.0, 0.0, 15.0};
     }
     for (std::size_t k = 0; k < 3; ++k) {
       f.target[0] = static_cast<double>(k);

@@ -95,9 +95,9 @@ class World {
   /// because bottom or obstacles are between them. Draws depend on (seed, episode, step, i, k)
   /// only.
   bool Sense(int lane, int i, int k, Detection* out) const;
-  /// Calls take(const Detection&) for each detection of vehicle i at the current step: by target. If
-  /// detections are not labelled (sensing.labelled), neither a detection nor their order says which
-  /// target it is of.
+  /// Calls take(const Detection&) for each detection of vehicle i at the current step: by target.
+  /// If detections are not labelled (sensing.labelled), neither a detection nor their order says
+  /// which target it is of.
   template <class Take>
   void SenseTargets(int lane, int i, const Take& take) const {
     if (!sensing_.labelled) {

@@ -39,8 +39,8 @@ class Inbox {
 
   /// Takes an own detection. Advance uses the newest one of each target. A detection of a target
   /// that it does not estimate is ignored. If detections are not labelled, Advance uses all of them
-  /// and finds out the targets (UnlabelledInput). One that is not finite is a bug of the caller and throws
-  /// std::invalid_argument.
+  /// and finds out the targets (UnlabelledInput). One that is not finite is a bug of the caller and
+  /// throws std::invalid_argument.
   void Detect(const dynamics::Detection& detection);
 
   /// Takes a packet that the modem received, and returns the state in it. A packet that cannot be

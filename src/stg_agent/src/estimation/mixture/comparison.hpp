@@ -31,8 +31,8 @@ class Comparison {
     const double since_s = Seconds(d.stamp - from.stamp);
     model_.Predict(since_s, &state_.mixture);
     state_.observers.Predict(since_s, &state_.mixture);
-    slot_ = state_.observers.Admit(source, d.stamp, d.p_WO_std_m, d.heading_std_rad,
-                                   &state_.mixture);
+    slot_ =
+        state_.observers.Admit(source, d.stamp, d.p_WO_std_m, d.heading_std_rad, &state_.mixture);
   }
 
   DetectionFit Fit(const dynamics::Detection& d) const {

@@ -56,7 +56,8 @@ class MeasurementFilter : public TargetFilter {
     }
     sightings_.reserve(kMostSightings + 1);
     if (!s.sensing.labelled) {
-      comparison_.emplace(model_, Snapshot(model_.layout(), DriftModelOf(s), self, kMostComponents));
+      comparison_.emplace(model_,
+                          Snapshot(model_.layout(), DriftModelOf(s), self, kMostComponents));
     }
   }
 
@@ -331,8 +332,8 @@ class MeasurementFilter : public TargetFilter {
   std::vector<Snapshot> snapshots_;  // used as a ring
   int first_ = 0, kept_ = 0;
   std::optional<Comparison> comparison_;  // only with unlabelled detections
-  OwnFrame own_;          // at present
-  GaussianMixture view_;  // target and own errors at present
+  OwnFrame own_;                          // at present
+  GaussianMixture view_;                  // target and own errors at present
   TargetBelief belief_;
   TargetEstimate estimate_;
 };

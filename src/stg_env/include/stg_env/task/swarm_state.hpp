@@ -54,7 +54,8 @@ struct FieldState {
 
 /// With task.assignment free: the target that each AUV follows, and its estimates of all targets.
 /// If detections are labelled, an AUV's estimate k is of target k. Otherwise Match finds out which
-/// true target each estimate counts for, so that the order of estimates has no effect on the scores.
+/// true target each estimate counts for, so that the order of estimates has no effect on the
+/// scores.
 template <class T>
 struct Following {
   Following(int agents, int targets)

@@ -201,7 +201,9 @@ SearchMetrics SearchTotals<T>::Metrics(int lane, double steps) const {
   if (scenario_.agent.task.free()) {
     const double judged = std::max(1.0, Lane(judged_, lane));
     m.choices = ChoiceMetrics{Lane(switches_, lane) / static_cast<double>(chosen_.size()),
-                              Lane(ospa_, lane) / judged, Lane(gospa_, lane) / judged, {}};
+                              Lane(ospa_, lane) / judged,
+                              Lane(gospa_, lane) / judged,
+                              {}};
     if (!of_.empty()) {
       m.choices->swaps = Lane(swaps_, lane) / static_cast<double>(chosen_.size());
     }

@@ -118,7 +118,8 @@ void SightingModel::UpdateRange(const Detection& d, int slot, GaussianMixture* m
   // depth on the other states is included.
   double *z = g.P + 2 * stride, *w = g.P + 5 * stride;
   const double kept[] = {g.x[2], g.x[5], z[2], z[5], w[5]};
-  *g.weight *= Take(form.row, form.innovation, form.variance, form.alike, 1.0 / range_m_, g, stride);
+  *g.weight *=
+      Take(form.row, form.innovation, form.variance, form.alike, 1.0 / range_m_, g, stride);
   g.x[2] = kept[0];
   g.x[5] = kept[1];
   // A range that is only partly believed may have widened the depth together with the rest. This is
@@ -135,8 +136,8 @@ void SightingModel::UpdateBearing(const Detection& d, double azimuth_rad, int sl
   Geometry at = GeometryOf(d, slot, *mixture, k);
   const Vec3<double> before = at.d * (1.0 / at.range);
   const Form azimuth = AzimuthForm(d, azimuth_rad, slot, at, g);
-  *g.weight *= Take(azimuth.row, azimuth.innovation, azimuth.variance, 0.0, 0.5 / kPi, g,
-                    mixture->stride());
+  *g.weight *=
+      Take(azimuth.row, azimuth.innovation, azimuth.variance, 0.0, 0.5 / kPi, g, mixture->stride());
   const Form elevation = ElevationForm(d, slot, GeometryOf(d, slot, *mixture, k));
   *g.weight *= Take(elevation.row, elevation.innovation, elevation.variance, 0.0, 1.0 / kPi, g,
                     mixture->stride());

@@ -89,7 +89,7 @@ inline dynamics::Detection DetectionOf(const auv_msgs::TargetDetection& m) {
   dynamics::Detection d;
   d.stamp = NsOf(m.header.stamp);
   d.target = m.target == auv_msgs::TargetDetection::UNLABELLED ? dynamics::kUnlabelled
-                                                                : static_cast<int>(m.target);
+                                                               : static_cast<int>(m.target);
   d.p_WT = VectorOf(m.position);
   d.std_m = std::sqrt(m.variance.x);
   d.kind = static_cast<dynamics::MeasurementKind>(m.kind);
