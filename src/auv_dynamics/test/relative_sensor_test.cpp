@@ -203,7 +203,7 @@ TEST_F(RelativeSensorTest, UnlabelledDetectionsAndTheirOrderDoNotTellTheTarget) 
   s_.run.agents = 3;
   config::Override(&s_, {"target.count=3", "sensing.labelled=false", "sensing.sensor=range",
                          "sensing.range.range_std_m=1e-9", "sensing.range.range_std_share=0"});
-  std::vector<Vec3<double>> places{kAt + Vec3<double>{0.0, 0.0, -200.0},
+  std::vector<Vec3<double>> places{kAt + Vec3<double>{-200.0, 0.0, 0.0},
                                    kAt + Vec3<double>{100.0, 0.0, 0.0},
                                    kAt + Vec3<double>{300.0, 0.0, 0.0}};
   const auto before = [](const Vec3<double>& a, const Vec3<double>& b) { return a.x < b.x; };

@@ -92,7 +92,7 @@ TEST(Allocation, NorDoAuvsThatLocateEachOther) {
 }
 
 TEST(Allocation, NorDoUnlabelledDetectionsOfManyTargets) {
-  EXPECT_EQ(AllocationsAfterWarmUp(Shipped("many8", "unlabelled")), 0);
+  EXPECT_EQ(AllocationsAfterWarmUp(Shipped("utracking", "unlabelled")), 0);
 }
 
 TEST(Allocation, NorDoManyAuvsWithNoiseAndMovingTargets) {
