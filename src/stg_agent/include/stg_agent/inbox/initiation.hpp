@@ -1,6 +1,7 @@
 #pragma once
 
 #include "auv_common/numbers/short_list.hpp"
+#include "auv_dynamics/measurements.hpp"
 #include "stg_agent/agent_config.hpp"
 
 namespace stg::agent {
