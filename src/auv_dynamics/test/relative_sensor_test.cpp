@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -196,6 +197,29 @@ TEST_F(RelativeSensorTest, ARepeatedLookSeesTheSame) {
 TEST_F(RelativeSensorTest, APeriodThatIsNoWholeNumberOfDecisionsIsRefused) {
   s_.world.sensing.period_s = 0.25;
   EXPECT_THROW(World{s_}, UserError);
+}
+
+TEST_F(RelativeSensorTest, UnlabelledDetectionsAndTheirOrderDoNotTellTheTarget) {
+  s_.run.agents = 3;
+  config::Override(&s_, {"target.count=3", "sensing.labelled=false", "sensing.sensor=range",
+                         "sensing.range.range_std_m=1e-9", "sensing.range.range_std_share=0"});
+  std::vector<Vec3<double>> places{kAt + Vec3<double>{-200.0, 0.0, 0.0},
+                                   kAt + Vec3<double>{100.0, 0.0, 0.0},
+                                   kAt + Vec3<double>{300.0, 0.0, 0.0}};
+  const auto before = [](const Vec3<double>& a, const Vec3<double>& b) { return a.x < b.x; };
+  do {
+    World world(s_);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      world.Place(lane, {kAt, kAt, kAt}, places, {{}, {}, {}});
+    }
+    std::vector<Detection> all;
+    world.SenseTargets(0, 0, [&all](const Detection& d) { all.push_back(d); });
+    ASSERT_EQ(all.size(), 3U);
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_EQ(all[k].target, kUnlabelled);
+      EXPECT_NEAR(all[k].range_m, 100.0 * static_cast<double>(k + 1), 1e-6);
+    }
+  } while (std::next_permutation(places.begin(), places.end(), before));
 }
 
 }  // namespace

@@ -76,7 +76,13 @@ std::optional<config::Violation> FindConflict(const FleetConfig& c, int agents) 
 
 /// Settings that contradict targets that are chosen freely.
 std::optional<config::Violation> FindFreeConflict(const AgentModel& model) {
-  if (!model.task.free()) return {};
+  if (!model.task.free()) {
+    if (model.sensing.labelled) return {};
+    return config::Violation{
+        {"sensing.labelled", "task.assignment"},
+        "an AUV assigns unlabelled detections to its estimates of all targets, which only the "
+        "assignment free has"};
+  }
   if (model.target.count > kMostFreeTargets) {
     return config::Violation{{"task.assignment", "target.count"},
                              "with the assignment free, a packet can describe at most " +

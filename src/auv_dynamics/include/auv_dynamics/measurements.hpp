@@ -29,11 +29,22 @@ using NavState = Navigation<double>;
 /// Kind of measurement of a detection.
 enum class MeasurementKind { kPosition, kRange, kBearing, kRangeBearing };
 
+/// How many numbers a detection of this kind measures.
+constexpr int NumbersOf(MeasurementKind kind) {
+  return kind == MeasurementKind::kRange ? 1 : kind == MeasurementKind::kBearing ? 2 : 3;
+}
+
+/// No scenario has more targets.
+inline constexpr int kMostTargets = 16;
+
+/// Target of a detection that does not say which target it is.
+inline constexpr int kUnlabelled = -1;
+
 /// One detection of a target by one vehicle's own sensor, in the frame of that vehicle's
 /// navigation, whose errors it shares.
 struct Detection {
   TimeNs stamp = 0;
-  int target = 0;
+  int target = 0;      ///< its index, or kUnlabelled
   Vec3<double> p_WT;   ///< measured target position in the world [m]: with range and bearing, their
                        ///< point; with a range or a bearing alone, the observer's position
   double std_m = 0.0;  ///< standard deviation of each component [m], the largest one

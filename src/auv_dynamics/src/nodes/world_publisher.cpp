@@ -213,15 +213,13 @@ void WorldPublisher::SetFrame(const dynamics::World& world, TimeNs start, int i,
 void WorldPublisher::SetDetections(const dynamics::World& world, TimeNs now, int i,
                                    auv_msgs::SensorFrame* frame) const {
   frame->detections.clear();
-  for (int k = 0; k < world.targets(); ++k) {
-    dynamics::Detection detection;
-    if (!world.Sense(0, i, k, &detection)) continue;
+  world.SenseTargets(0, i, [now, frame](const dynamics::Detection& detection) {
     frame->detections.emplace_back();
     auv_msgs::TargetDetection& m = frame->detections.back();
     m.header.stamp = TimeOf(now);
     m.header.frame_id = frames::kWorld;
     SetDetection(detection, &m);
-  }
+  });
 }
 
 void WorldPublisher::PublishSwarm() { swarm_.publish(swarm_message_); }

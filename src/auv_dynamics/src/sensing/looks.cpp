@@ -1,6 +1,7 @@
 #include "looks.hpp"
 
 #include <cmath>
+#include <tuple>
 
 namespace stg::dynamics {
 
@@ -14,6 +15,15 @@ bool Blind(const SensingConfig& config, const Look& look) {
   const auto slot = static_cast<std::uint32_t>(look.time_s / config.dropout_duration_s);
   Random random = look.clock.DrawAt(Stream::kDetection, slot, look.pair | 0x800000U);
   return random.Uniform() < 1.0 - std::exp(-config.dropout_rate_hz * config.dropout_duration_s);
+}
+
+void RemoveLabel(Detection* detection) { detection->target = kUnlabelled; }
+
+bool MeasuresLess(const Detection& a, const Detection& b) {
+  const auto numbers = [](const Detection& d) {
+    return std::make_tuple(d.range_m, d.azimuth_rad, d.elevation_rad, d.p_WT.x, d.p_WT.y, d.p_WT.z);
+  };
+  return numbers(a) < numbers(b);
 }
 
 void SetObserver(const Look& look, Detection* out) {

@@ -55,6 +55,9 @@ void Describe(SensingConfig* c, config::Table* t) {
   t->AddOptional("ranging", config::Enum(&c->ranging, {"free", "ping"}), "free", kNone, "-",
                  "cost of a range of the sensor `range`. free: none; ping: the AUV's modem pings "
                  "the target's transponder, which takes time on the channel and energy");
+  t->AddOptional("labelled", &c->labelled, "true", kNone, "-",
+                 "a detection says which target it is of. false: it does not, nor whether it is a "
+                 "false alarm, and each AUV assigns its detections to its estimates");
   const auto sensor = [c] { return std::vector<std::string>{c->sensor}; };
   t->Thing({"target sensor", {"position"}, "sensing.sensor", sensor}, "sensing.position", c,
            [](SensingConfig* o, config::Table* table) {
@@ -78,6 +81,10 @@ std::optional<config::Violation> FindConflict(const SensingConfig& c, double dec
                              "the period must be a whole number of decisions"};
   }
   if (!c.pings()) return {};
+  if (!c.labelled) {
+    return config::Violation{{"sensing.labelled", "sensing.ranging"},
+                             "the answer to a ping says which transponder sent it"};
+  }
   if (TargetSensors().Make(c.sensor, c.sensors, c)->kind() != MeasurementKind::kRange) {
     return config::Violation{{"sensing.ranging", "sensing.sensor"},
                              "a ping measures only a range, so the sensor must measure ranges"};

@@ -1,5 +1,6 @@
 #include "auv_dynamics/world/world.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <string>
 
@@ -247,6 +248,16 @@ bool World::Sense(int lane, int i, int k, Detection* out) const {
   return sensor_->Sense({lane, clock(lane), dt_s_ * step(lane), time(lane), k, pair, vehicle(i),
                          target(k), observer, !perfect_},
                         out);
+}
+
+void World::SenseUnlabelled(int lane, int i, UnlabelledLook* look) const {
+  for (int k = 0; k < targets(); ++k) {
+    Detection detection;
+    if (!Sense(lane, i, k, &detection)) continue;
+    RemoveLabel(&detection);
+    look->push_back(detection);
+  }
+  std::sort(look->begin(), look->end(), MeasuresLess);
 }
 
 Cue World::InitialCue(int lane, int i, int k) const {

@@ -62,7 +62,8 @@ void LanedAgent<T>::Reset(int lane, std::uint32_t episode, const dynamics::Cue& 
 template <class T>
 void LanedAgent<T>::Detect(int lane, const dynamics::Detection& detection) {
   if (!present(lane)) return;
-  if (detection.target >= 0 && detection.target < model().target.count) {
+  const bool labelled = model().sensing.labelled;
+  if (labelled && detection.target >= 0 && detection.target < model().target.count) {
     if (!search_.empty() && detection.target == inbox(lane).target()) {
       search_[static_cast<std::size_t>(lane)].Detect(detection);
     }
@@ -133,6 +134,11 @@ void LanedAgent<T>::Think(const dynamics::Navigation<T>& nav, const Mask<T>& lan
     neighbours_.MarkRead(lane);
     EntityMemory& memory = memory_[static_cast<std::size_t>(lane)];
     memory.now = OfLane(nav.stamp, lane);
+    if (!model().sensing.labelled) {
+      for (int k = 0; k < inbox(lane).beliefs(); ++k) {
+        memory.own_detection[static_cast<std::size_t>(k)] = inbox(lane).own_detection(k);
+      }
+    }
     memory.position_std_m = Lane(nav.position_std_m, lane);
     if (!search_.empty()) {
       search_[static_cast<std::size_t>(lane)].Update(memory.now, Lane(nav.p_WB, lane),

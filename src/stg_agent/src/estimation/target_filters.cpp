@@ -23,9 +23,14 @@ std::optional<config::Violation> FindFilterConflict(const AgentModel& model) {
   const auto filter = TargetFilters().Make(model.track.filter, model, 0);
   const auto sensor =
       dynamics::TargetSensors().Make(model.sensing.sensor, model.sensing.sensors, model.sensing);
-  if (filter->Takes(sensor->kind(), model.sensing.relative().ambiguous)) return {};
-  return config::Violation{{"track.filter", "sensing.sensor"},
-                           "this filter cannot use the measurements of this sensor"};
+  if (!filter->Takes(sensor->kind(), model.sensing.relative().ambiguous)) {
+    return config::Violation{{"track.filter", "sensing.sensor"},
+                             "this filter cannot use the measurements of this sensor"};
+  }
+  if (model.sensing.labelled || filter->Associates()) return {};
+  return config::Violation{{"sensing.labelled", "track.filter"},
+                           "this filter cannot compare a detection with its estimate: set "
+                           "track.filter to measurements"};
 }
 
 namespace {

@@ -17,6 +17,7 @@ Inbox::Inbox(SharedConstants constants, int id)
       target_(constants_->model.target.of(id)),
       pending_(static_cast<std::size_t>(constants_->model.beliefs())),
       localizer_(MakeLocalizer(constants_->model, id_)) {
+  if (!constants_->model.sensing.labelled) unlabelled_.emplace(constants_->model, id_);
   if (constants_->model.surfaces()) surfacing_.emplace(constants_->model, id_);
   for (int k = 0; k < constants_->model.beliefs(); ++k) {
     filters_.push_back(
@@ -31,6 +32,7 @@ void Inbox::Reset(std::uint32_t episode, const dynamics::Cue& cue) {
   for (auto& filter : filters_) filter->Clear();
   if (localizer_ != nullptr) localizer_->Reset();
   if (surfacing_) surfacing_->Reset();
+  if (unlabelled_) unlabelled_->Clear();
   for (Pending& pending : pending_) pending = Pending();
   target_ = constants_->model.target.of(id_);
   changed_ = false;
@@ -52,13 +54,17 @@ void Inbox::Follow(int target) {
 }
 
 void Inbox::Detect(const dynamics::Detection& detection) {
-  if (!Believes(detection.target)) return;
+  if (!unlabelled_ && !Believes(detection.target)) return;
   if (!Finite(detection.p_WT) || !Finite(detection.p_WO) ||
       !std::isfinite(detection.std_m + detection.p_WO_std_m + detection.heading_std_rad +
                      detection.range_m + detection.range_std_m + detection.azimuth_rad +
                      detection.elevation_rad + detection.bearing_std_rad +
                      detection.mirror_azimuth_rad)) {
     throw std::invalid_argument("non-finite target detection");
+  }
+  if (unlabelled_) {
+    unlabelled_->Detect(detection);
+    return;
   }
   Pending& pending = pending_[IndexOf(detection.target)];
   if (pending.has_detection && detection.stamp <= pending.detection.stamp) return;
@@ -110,6 +116,10 @@ void Inbox::ToOwnFrame(NeighbourState* state) const {
 }
 
 void Inbox::Hear(const NeighbourState& state) {
+  if (unlabelled_) {
+    unlabelled_->Hear(state);
+    return;
+  }
   if (!constants_->model.task.free()) {
     if (state.target == target_) filters_.front()->Hear(state);
     return;
@@ -144,6 +154,7 @@ void Inbox::Advance(TimeNs now, const NeighbourTable& neighbours, const OwnRecko
   // The order is fixed, for any order of the messages: shared estimates by index, then the own
   // detection.
   if (neighbours.unread()) FuseNewest(neighbours);
+  if (unlabelled_) unlabelled_->Give(now_, &filters_);
   for (std::size_t k = 0; k < filters_.size(); ++k) {
     Pending& pending = pending_[k];
     if (pending.has_detection && pending.detection.stamp <= now_) {

@@ -40,7 +40,7 @@ AgentNode::AgentNode()
       commands_velocity_(model_.control.interface == dynamics::ActionInterface::kVelocity3),
       commands_wrench_(!commands_velocity_ ||
                        (AutopilotOnBoardParameter() && !dynamics::Helm::Steers(model_.vehicle))),
-      pending_(id_, model_.target.count),
+      pending_(id_, model_.target.count, model_.sensing.labelled),
       tracker_(period_, model_.run.time.episode_steps),
       barrier_(kParties, period_),
       observation_(static_cast<std::size_t>(model_.observation_size())),

@@ -1,6 +1,5 @@
 #include "pending_inputs.hpp"
 
-#include <cstdint>
 #include <iterator>
 
 #include "acoustic_channel/nodes/conversions.hpp"
@@ -16,13 +15,18 @@ constexpr std::size_t kMaxPending = 100;
 
 }  // namespace
 
+/// Whether this is how a detection of this scenario names its target.
+bool PendingInputs::Names(std::uint32_t target) const {
+  if (!labelled_) return target == auv_msgs::TargetDetection::UNLABELLED;
+  return target < static_cast<std::uint32_t>(targets_);
+}
+
 void PendingInputs::Keep(const auv_msgs::TargetDetection& message, TimeNs now) {
   if (message.header.frame_id != frames::kWorld) {
     refused_detections_.Add(Refusals::kFrame);
   } else if (!UsableDetection(message)) {
     refused_detections_.Add(Refusals::kNotFinite);
-  } else if (message.target >= static_cast<std::uint32_t>(targets_) ||
-             detections_.size() >= kMaxPending) {
+  } else if (!Names(message.target) || detections_.size() >= kMaxPending) {
     refused_detections_.Add(Refusals::kMalformed);
   } else if (NsOf(message.header.stamp) > now) {
     refused_detections_.Add(Refusals::kStale);

@@ -3,6 +3,7 @@
 #include <auv_msgs/AcousticReception.h>
 #include <auv_msgs/TargetDetection.h>
 
+#include <cstdint>
 #include <map>
 #include <vector>
 
@@ -16,8 +17,9 @@ namespace stg::nodes {
 /// because that one is needed last.
 class PendingInputs {
  public:
-  /// @param id of the AUV. @param targets of the scenario
-  PendingInputs(int id, int targets) : id_(id), targets_(targets) {}
+  /// @param id of the AUV. @param targets of the scenario. @param labelled detections name them
+  PendingInputs(int id, int targets, bool labelled)
+      : id_(id), targets_(targets), labelled_(labelled) {}
 
   /// Takes a detection from the sensor frame of clock time `now`; a later stamp is refused.
   void Keep(const auv_msgs::TargetDetection& message, TimeNs now);
@@ -35,7 +37,10 @@ class PendingInputs {
   void Report(diagnostic_updater::DiagnosticStatusWrapper* status);
 
  private:
+  bool Names(std::uint32_t target) const;
+
   int id_, targets_;
+  bool labelled_;
   std::vector<dynamics::Detection> detections_;  ///< with clock time
   /// By clock time of the window's end [ns].
   std::multimap<TimeNs, auv_msgs::AcousticReception::ConstPtr> receptions_;

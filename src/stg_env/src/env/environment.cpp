@@ -129,6 +129,7 @@ void Environment::AskWhatTheyFollow() {
   if (following_ == nullptr) return;
   for (std::size_t i = 0; i < tau_.size(); ++i) {
     source_->Choose(static_cast<int>(i), following_.get());
+    if (!scenario_.world.sensing.labelled) following_->Match(i, world_.target_states());
     for (int lane = 0; lane < kLanes; ++lane) {
       const dynamics::TargetState<Pack>& target =
           world_.target(followed(lane, static_cast<int>(i)));

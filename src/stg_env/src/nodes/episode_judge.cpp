@@ -127,12 +127,13 @@ void EpisodeJudge::SetFollowing(const SwarmFrame& frame) {
   for (std::size_t i = 0; i < vehicles_.size(); ++i) {
     const auto& task = frame.tasks[i];
     if (task && task->target < n) f.target[i] = task->target;
-    f.state[i] = targets_[static_cast<std::size_t>(f.target[i])];
-    if (!task || task->beliefs.size() != n || task->beliefs_known.size() != n) continue;
-    for (std::size_t k = 0; k < n; ++k) {
+    const bool complete = task && task->beliefs.size() == n && task->beliefs_known.size() == n;
+    for (std::size_t k = 0; complete && k < n; ++k) {
       f.known[i * n + k] = task->beliefs_known[k] ? 1.0 : 0.0;
       f.p_WT[i * n + k] = VectorOf(task->beliefs[k]);
     }
+    if (complete && !scenario_.world.sensing.labelled) f.Match(i, targets_);
+    f.state[i] = targets_[static_cast<std::size_t>(f.target[i])];
   }
 }
 

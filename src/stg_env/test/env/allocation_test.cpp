@@ -91,6 +91,10 @@ TEST(Allocation, NorDoAuvsThatLocateEachOther) {
   EXPECT_EQ(AllocationsAfterWarmUp(Shipped("deep", "craft")), 0);
 }
 
+TEST(Allocation, NorDoUnlabelledDetectionsOfManyTargets) {
+  EXPECT_EQ(AllocationsAfterWarmUp(Shipped("utracking", "unlabelled")), 0);
+}
+
 TEST(Allocation, NorDoManyAuvsWithNoiseAndMovingTargets) {
   std::vector<std::string> keys{"agents=20",
                                 "target.count=3",

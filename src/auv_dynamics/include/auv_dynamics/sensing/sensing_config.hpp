@@ -47,6 +47,7 @@ struct SensingConfig {
   double period_s = 0.0;               ///< between two looks; 0: every decision
   config::OptionsByName sensors = {};  ///< options of each one except `position`
   Ranging ranging = Ranging::kFree;
+  bool labelled = true;  ///< detections say which target they are of
 
   bool pings() const { return ranging == Ranging::kPing; }
   RelativeOptions relative() const { return sensors.Get<RelativeOptions>(sensor); }

@@ -48,6 +48,11 @@ class TargetSensor {
 using SensorRegistry = Registry<const TargetSensor, const SensingConfig&>;
 SensorRegistry& TargetSensors();
 
+/// Removes the target from a detection.
+void RemoveLabel(Detection* detection);
+/// An order of the detections of one look that depends only on what they measure.
+bool MeasuresLess(const Detection& a, const Detection& b);
+
 /// The cue on target k at the start of an episode: its position at the start with the stated
 /// uncertainty, the same for every vehicle, like one contact report that starts a search.
 Cue DrawCue(const SensingConfig& config, const EpisodeClock& clock, int k,

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "auv_common/numbers/short_list.hpp"
 #include "auv_dynamics/measurements.hpp"
 #include "auv_dynamics/navigation/navigation_system.hpp"
 #include "auv_dynamics/sensing/target_sensor.hpp"
@@ -94,6 +95,22 @@ class World {
   /// because bottom or obstacles are between them. Draws depend on (seed, episode, step, i, k)
   /// only.
   bool Sense(int lane, int i, int k, Detection* out) const;
+  /// Calls take(const Detection&) for each detection of vehicle i at the current step: by target.
+  /// If detections are not labelled (sensing.labelled), neither a detection nor their order says
+  /// which target it is of.
+  template <class Take>
+  void SenseTargets(int lane, int i, const Take& take) const {
+    if (!sensing_.labelled) {
+      UnlabelledLook look;
+      SenseUnlabelled(lane, i, &look);
+      for (const Detection& detection : look) take(detection);
+      return;
+    }
+    for (int k = 0; k < targets(); ++k) {
+      Detection detection;
+      if (Sense(lane, i, k, &detection)) take(detection);
+    }
+  }
   /// Datum of vehicle i at the start of the episode.
   Cue InitialCue(int lane, int i, int k) const;
 
@@ -107,6 +124,8 @@ class World {
   bool open_water() const { return open_; }
 
  private:
+  using UnlabelledLook = ShortList<Detection, kMostTargets>;
+  void SenseUnlabelled(int lane, int i, UnlabelledLook* look) const;
   const EpisodeClock& clock(int lane) const { return clocks_[static_cast<size_t>(lane)]; }
   Pack Time() const;
   /// @param name with its number, for the message

@@ -4,11 +4,11 @@
 
 #include "auv_common/numbers/vector.hpp"
 #include "auv_common/time.hpp"
+#include "auv_dynamics/measurements.hpp"
 
 namespace stg::agent {
 
-/// No scenario has more targets.
-inline constexpr int kMostTargets = 16;
+using dynamics::kMostTargets;
 
 /// Size of a command. Actions with fewer numbers use the first ones.
 inline constexpr int kCommandNumbers = 5;

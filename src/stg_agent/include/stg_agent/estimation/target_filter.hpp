@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "auv_common/registry.hpp"
+#include "stg_agent/estimation/association.hpp"
 #include "stg_agent/estimation/target_track.hpp"
 #include "stg_agent/localization/localizer.hpp"
 #include "stg_agent/packet/packet.hpp"
@@ -68,6 +69,14 @@ class TargetFilter {
   virtual void Predict(TimeNs now) = 0;
   /// Takes the newest packet of a neighbour about this target.
   virtual void Fuse(const NeighbourState& packet) { (void)packet; }
+  /// Whether it can compare detections with its estimate.
+  virtual bool Associates() const { return false; }
+  /// Compares a detection of an AUV, before it is taken, with the estimate at that time.
+  virtual DetectionFit Fit(const dynamics::Detection& detection, int source) {
+    (void)detection;
+    (void)source;
+    return {};
+  }
   /// Takes an own detection of this target, with a stamp up to now.
   virtual void Detect(const dynamics::Detection& detection) = 0;
   /// Ends the input of a decision.

@@ -12,6 +12,7 @@
 #include "stg_agent/graph/neighbour_table.hpp"
 #include "stg_agent/graph/target_view.hpp"
 #include "stg_agent/inbox/agent_constants.hpp"
+#include "stg_agent/inbox/unlabelled_input.hpp"
 #include "stg_agent/localization/localizer.hpp"
 #include "stg_agent/localization/surfacing.hpp"
 
@@ -37,8 +38,9 @@ class Inbox {
   void AddCue(const dynamics::Cue& cue);
 
   /// Takes an own detection. Advance uses the newest one of each target. A detection of a target
-  /// that it does not estimate is ignored. One that is not finite is a bug of the caller and throws
-  /// std::invalid_argument.
+  /// that it does not estimate is ignored. If detections are not labelled, Advance uses all of them
+  /// and finds out the targets (UnlabelledInput). One that is not finite is a bug of the caller and
+  /// throws std::invalid_argument.
   void Detect(const dynamics::Detection& detection);
 
   /// Takes a packet that the modem received, and returns the state in it. A packet that cannot be
@@ -83,6 +85,10 @@ class Inbox {
   /// The same for any estimated target.
   TargetEstimate estimate(int target) const { return Of(target).estimate(); }
   TargetBelief belief(int target) const { return Of(target).belief(); }
+  /// Time of the newest own detection that a target got from unlabelled ones; -1: none.
+  TimeNs own_detection(int target) const {
+    return unlabelled_ ? unlabelled_->own_detection(target) : -1;
+  }
   /// Estimates the errors of reckoned positions; null: none is chosen.
   const Localizer* localizer() const { return localizer_.get(); }
   /// Decides when the AUV surfaces for a fix; null: it never does.
@@ -115,6 +121,7 @@ class Inbox {
   std::vector<Pending> pending_;                        // likewise
   std::unique_ptr<Localizer> localizer_;                // null: none is chosen
   std::optional<Surfacing> surfacing_;
+  std::optional<UnlabelledInput> unlabelled_;  // not with labelled detections
   TimeNs now_ = 0;
   OwnReckoning own_;
   std::uint32_t episode_ = 0;

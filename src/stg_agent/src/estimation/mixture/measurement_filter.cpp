@@ -1,12 +1,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <vector>
 
+#include "comparison.hpp"
 #include "moments.hpp"
-#include "observers.hpp"
+#include "snapshot.hpp"
 #include "stg_agent/estimation/target_filter.hpp"
-#include "surround.hpp"
 
 namespace stg::agent {
 namespace {
@@ -28,30 +29,6 @@ constexpr double kMirrorWeight = 0.03;
 constexpr double kLeastMirrorWeight = 0.002;
 constexpr TimeNs kAlone = 20'000'000'000;  ///< after the last sighting of a third observer
 constexpr double kLeastSurround = 0.3;     ///< from this value on, less weight is enough
-
-/// A detection and the AUV that measured it.
-struct Sighting {
-  Detection detection;
-  int source = 0;
-};
-
-/// State of the filter after all sightings up to a time.
-struct Snapshot {
-  Snapshot(const StateLayout& layout, const DriftModel& drift, int self, int capacity)
-      : mixture(layout.states(), capacity), observers(layout, drift, self) {}
-
-  TimeNs covers = -1;  ///< contains the sightings up to this time
-  TimeNs stamp = 0;    ///< time of the state
-  TimeNs information = 0;
-  bool observed = false;
-  Sighting last;            ///< the newest sighting in it
-  Sighting other;           ///< the newest one of another AUV
-  TimeNs third = 0;         ///< time of the last one of a third AUV
-  Surround surround;        ///< how the observers surround the target
-  TimeNs mirrored = 0;      ///< when the mirror image last got some weight
-  GaussianMixture mixture;  ///< empty: nothing is known about the target
-  Observers observers;
-};
 
 DriftModel DriftModelOf(const AgentModel& s) {
   return {s.navigation.current_std_mps, s.track.shear_std_mps * s.track.shear_std_mps,
@@ -78,12 +55,18 @@ class MeasurementFilter : public TargetFilter {
       snapshots_.emplace_back(model_.layout(), DriftModelOf(s), self, kKeptComponents);
     }
     sightings_.reserve(kMostSightings + 1);
+    if (!s.sensing.labelled) {
+      comparison_.emplace(model_,
+                          Snapshot(model_.layout(), DriftModelOf(s), self, kMostComponents));
+    }
   }
 
   bool Takes(dynamics::MeasurementKind, bool) const override { return true; }
+  bool Associates() const override { return true; }
   PacketLayout layout() const override { return PacketLayout::kMeasurements; }
 
   void Clear() override {
+    if (comparison_) comparison_->Forget();
     sightings_.clear();
     played_ = 0;
     now_.covers = -1;
@@ -103,6 +86,7 @@ class MeasurementFilter : public TargetFilter {
   }
 
   void Start(const Vec3<double>& p_WT, double std_m, TimeNs stamp) override {
+    if (comparison_) comparison_->Forget();
     now_.mixture.Clear();
     model_.Datum(p_WT, std_m, now_.mixture.Add(), now_.mixture.stride());
     now_.stamp = now_.information = stamp;
@@ -120,6 +104,18 @@ class MeasurementFilter : public TargetFilter {
   void Predict(TimeNs) override {}
 
   void Detect(const Detection& detection) override { Insert({detection, self_}); }
+
+  DetectionFit Fit(const Detection& d, int source) override {
+    if (!comparison_->IsOf(d, source)) {
+      while (played_ < sightings_.size() && sightings_[played_].detection.stamp <= d.stamp) Play();
+      const Snapshot* from = &now_;  // for a late detection, the last snapshot up to its time
+      for (int k = kept_; from->covers > d.stamp && k > 0;) from = &Kept(--k);
+      comparison_->Start(*from, d, source);
+    }
+    DetectionFit fit = comparison_->Fit(d);
+    fit.started = now_.mixture.size() > 0;
+    return fit;
+  }
 
   void Settle(TimeNs now, const OwnFrame& own) override {
     own_ = own;
@@ -183,6 +179,7 @@ class MeasurementFilter : public TargetFilter {
       if (it->source == s.source) return;
     }
     if (sightings_.size() == kMostSightings) return;
+    if (comparison_) comparison_->Forget();
     const auto index = static_cast<std::size_t>(at - sightings_.begin());
     sightings_.insert(at, s);
     if (index < played_) Rewind(stamp);
@@ -334,8 +331,9 @@ class MeasurementFilter : public TargetFilter {
   Snapshot now_;
   std::vector<Snapshot> snapshots_;  // used as a ring
   int first_ = 0, kept_ = 0;
-  OwnFrame own_;          // at present
-  GaussianMixture view_;  // target and own errors at present
+  std::optional<Comparison> comparison_;  // only with unlabelled detections
+  OwnFrame own_;                          // at present
+  GaussianMixture view_;                  // target and own errors at present
   TargetBelief belief_;
   TargetEstimate estimate_;
 };

@@ -4,7 +4,7 @@
 
 #include "auv_common/time.hpp"
 #include "gaussian_mixture.hpp"
-#include "sighting_model.hpp"
+#include "sighting/sighting_model.hpp"
 
 namespace stg::agent {
 

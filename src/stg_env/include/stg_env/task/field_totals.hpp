@@ -44,6 +44,7 @@ class SearchTotals {
   };
   /// With task.assignment free.
   void AddChoices(const SwarmState<T>& swarm);
+  void AddSwaps(const SwarmState<T>& swarm, std::size_t i);
   T InBand(const Tracking<T>& k) const;
   void Follow(const Vec3<T>& p_WT, OfTarget* target) const;
 
@@ -52,8 +53,11 @@ class SearchTotals {
   T decisions_ = T(0.0), gathered_ = T(-1.0), info_spread_ = T(0.0);
   std::vector<OfTarget> targets_;
   // With task.assignment free.
-  T switches_ = T(0.0), judged_ = T(0.0), ospa_ = T(0.0), gospa_ = T(0.0);
+  T switches_ = T(0.0), swaps_ = T(0.0), judged_ = T(0.0), ospa_ = T(0.0), gospa_ = T(0.0);
   std::vector<T> chosen_;  // [agents] at the last decision
+  /// [agents, targets], true target of an estimate when it was last good; -1: none. Empty with
+  /// labelled detections.
+  std::vector<T> of_;
 };
 
 /// Sums for FieldMetrics. Each lane counts its own decisions.

@@ -15,6 +15,8 @@ struct ChoiceMetrics {
   /// Distance between the set of an AUV's target estimates and the set of targets, mean over AUVs
   /// and decisions (DistanceOfSets with a cutoff of 100 m) [m].
   double ospa = 0.0, gospa = 0.0;
+  /// With unlabelled detections: how often an estimate has become one of another target, per AUV.
+  std::optional<double> swaps;
 };
 
 /// Metrics of search: detection, surrounding and following of targets.

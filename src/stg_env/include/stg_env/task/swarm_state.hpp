@@ -53,6 +53,9 @@ struct FieldState {
 };
 
 /// With task.assignment free: the target that each AUV follows, and its estimates of all targets.
+/// If detections are labelled, an AUV's estimate k is of target k. Otherwise Match finds out which
+/// true target each estimate counts for, so that the order of estimates has no effect on the
+/// scores.
 template <class T>
 struct Following {
   Following(int agents, int targets)
@@ -61,11 +64,19 @@ struct Following {
         known(target.size() * static_cast<std::size_t>(targets), T(0.0)),
         p_WT(known.size()) {}
 
+  /// Pairs the estimates of AUV i with the true targets at the least sum of distances in the plane,
+  /// each up to a cutoff. `target`, which is the estimate that the AUV follows, becomes the true
+  /// target of this estimate.
+  void Match(std::size_t i, const std::vector<dynamics::TargetState<T>>& targets);
+
   std::vector<T> target;                        ///< [agents], index of the target it follows
   std::vector<dynamics::TargetState<T>> state;  ///< [agents], true state of that target
   std::vector<T> known;       ///< [agents, targets], 1: the AUV estimates the target
   std::vector<Vec3<T>> p_WT;  ///< [agents, targets], estimated position [m]
 };
+
+extern template struct Following<double>;
+extern template struct Following<Pack>;
 
 /// The true state of a swarm when a decision is due, and the commands of the previous decision: the
 /// whole input of a task. It is a view, and does not depend on what moved the swarm. T = double:

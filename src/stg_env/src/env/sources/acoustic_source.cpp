@@ -57,10 +57,9 @@ void AcousticSource::Observe(const dynamics::World& world, const LaneSet& lanes)
         channels_[static_cast<std::size_t>(lane)]->Deliver(i, world.time(lane), &received_);
         for (const acoustics::Reception& r : received_) agent.Receive(lane, r);
       }
-      for (int k = 0; k < targets_.count; ++k) {
-        dynamics::Detection detection;
-        if (world.Sense(lane, i, k, &detection)) agent.Detect(lane, detection);
-      }
+      world.SenseTargets(lane, i, [&agent, lane](const dynamics::Detection& detection) {
+        agent.Detect(lane, detection);
+      });
     }
     if (lanes.all()) {
       agent.Observe(world.Nav(i));

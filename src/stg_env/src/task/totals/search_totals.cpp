@@ -32,6 +32,7 @@ std::vector<std::pair<std::string, double>> SearchMetrics::Items() const {
     items.insert(
         items.end(),
         {{"switches", choices->switches}, {"ospa", choices->ospa}, {"gospa", choices->gospa}});
+    if (choices->swaps) items.emplace_back("swaps", *choices->swaps);
   }
   return items;
 }
@@ -42,6 +43,7 @@ SearchTotals<T>::SearchTotals(const JudgeConfig& scenario)
       window_(std::max(1.0, std::round(kWindow_s / scenario.run.decision_dt_s()))),
       targets_(static_cast<std::size_t>(scenario.world.target.count)),
       chosen_(static_cast<std::size_t>(scenario.run.agents), T(-1.0)) {
+  if (!scenario.world.sensing.labelled) of_.assign(chosen_.size() * targets_.size(), T(-1.0));
   const int agents = scenario.run.agents, targets = scenario.world.target.count;
   for (int t = 0; t < targets; ++t) {
     const int team = scenario.agent.task.free() ? std::max(1, agents / targets)
@@ -56,8 +58,9 @@ void SearchTotals<T>::Start(const Mask<T>& lanes) {
   restart(&decisions_, 0.0);
   restart(&gathered_, -1.0);
   restart(&info_spread_, 0.0);
-  for (T* sum : {&switches_, &judged_, &ospa_, &gospa_}) restart(sum, 0.0);
+  for (T* sum : {&switches_, &swaps_, &judged_, &ospa_, &gospa_}) restart(sum, 0.0);
   for (T& chosen : chosen_) restart(&chosen, -1.0);
+  for (T& of : of_) restart(&of, -1.0);
   for (OfTarget& t : targets_) {
     restart(&t.detected, -1.0);
     for (T* sum : {&t.followed, &t.way, &t.net, &t.window_way}) restart(sum, 0.0);
@@ -85,6 +88,29 @@ void SearchTotals<T>::Follow(const Vec3<T>& p_WT, OfTarget* t) const {
   t->p_window = Select<T>(over, p_WT, t->p_window);
 }
 
+/// Counts the estimates of AUV i that now are of another target than when they were last good. An
+/// estimate is good if it is near one target and not near another one.
+template <class T>
+void SearchTotals<T>::AddSwaps(const SwarmState<T>& swarm, std::size_t i) {
+  const Following<T>& f = *swarm.following;
+  const std::size_t n = targets_.size();
+  for (std::size_t k = i * n; k < (i + 1) * n; ++k) {
+    for (int lane = 0; lane < kLanesOf<T>; ++lane) {
+      if (Lane(f.known[k], lane) < 0.5) continue;
+      int near = -1, doubtful = 0;
+      for (std::size_t t = 0; t < n; ++t) {
+        const double apart = Level(Lane(f.p_WT[k], lane) - Lane(swarm.targets[t].p_WT, lane));
+        if (apart < kGood_m) near = static_cast<int>(t);
+        if (apart < 2.0 * kGood_m) ++doubtful;
+      }
+      if (near < 0 || doubtful > 1) continue;
+      const double before = Lane(of_[k], lane);
+      if (before >= 0.0 && before != near) SetLane(&swaps_, lane, Lane(swaps_, lane) + 1.0);
+      SetLane(&of_[k], lane, static_cast<double>(near));
+    }
+  }
+}
+
 template <class T>
 void SearchTotals<T>::AddChoices(const SwarmState<T>& swarm) {
   const Following<T>& f = *swarm.following;
@@ -95,6 +121,7 @@ void SearchTotals<T>::AddChoices(const SwarmState<T>& swarm) {
     const auto changed = (chosen_[i] >= zero) && !(chosen_[i] == f.target[i]);
     switches_ += Select(changed && (present > T(0.5)), one, zero);
     chosen_[i] = f.target[i];
+    if (!of_.empty()) AddSwaps(swarm, i);
     judged_ += present;
     for (int lane = 0; lane < kLanesOf<T>; ++lane) {
       if (Lane(present, lane) < 0.5) continue;
@@ -174,7 +201,12 @@ SearchMetrics SearchTotals<T>::Metrics(int lane, double steps) const {
   if (scenario_.agent.task.free()) {
     const double judged = std::max(1.0, Lane(judged_, lane));
     m.choices = ChoiceMetrics{Lane(switches_, lane) / static_cast<double>(chosen_.size()),
-                              Lane(ospa_, lane) / judged, Lane(gospa_, lane) / judged};
+                              Lane(ospa_, lane) / judged,
+                              Lane(gospa_, lane) / judged,
+                              {}};
+    if (!of_.empty()) {
+      m.choices->swaps = Lane(swaps_, lane) / static_cast<double>(chosen_.size());
+    }
   }
   return m;
 }

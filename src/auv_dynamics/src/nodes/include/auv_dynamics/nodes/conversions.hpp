@@ -55,7 +55,8 @@ inline void SetDetection(const dynamics::Detection& d, auv_msgs::TargetDetection
   const Vec3<double> r = d.p_WT - d.p_WO;
   const double variance = d.std_m * d.std_m;
   const bool position = d.kind == dynamics::MeasurementKind::kPosition;
-  m->target = static_cast<std::uint32_t>(d.target);
+  m->target = d.target == dynamics::kUnlabelled ? auv_msgs::TargetDetection::UNLABELLED
+                                                : static_cast<std::uint32_t>(d.target);
   m->kind = static_cast<std::uint8_t>(d.kind);
   SetVector(r, &m->relative_position);
   SetVector(d.p_WT, &m->position);
@@ -87,7 +88,8 @@ inline bool UsableDetection(const auv_msgs::TargetDetection& m) {
 inline dynamics::Detection DetectionOf(const auv_msgs::TargetDetection& m) {
   dynamics::Detection d;
   d.stamp = NsOf(m.header.stamp);
-  d.target = static_cast<int>(m.target);
+  d.target = m.target == auv_msgs::TargetDetection::UNLABELLED ? dynamics::kUnlabelled
+                                                               : static_cast<int>(m.target);
   d.p_WT = VectorOf(m.position);
   d.std_m = std::sqrt(m.variance.x);
   d.kind = static_cast<dynamics::MeasurementKind>(m.kind);

@@ -49,12 +49,30 @@ struct SightingModel::Row {
       const double* p = g.P + index[static_cast<std::size_t>(k)] * stride;
       for (int c = 0; c < stride; ++c) column[c] += v * p[c];
     }
+    return Dot(column);
+  }
+  double Dot(const double* column) const {
     double sum = 0.0;
     for (int k = 0; k < count; ++k) {
       sum += value[static_cast<std::size_t>(k)] * column[index[static_cast<std::size_t>(k)]];
     }
     return sum;
   }
+};
+
+/// One number of a detection, linearised at a component.
+struct SightingModel::Form {
+  Row row;
+  double innovation = 0.0;
+  double variance = 0.0;  ///< of the noise and of the second order
+  double alike = 0.0;     ///< part of the second order that many measurements share
+};
+
+/// The point that a detection measures, relative to the observer.
+struct SightingModel::Point {
+  Vec3<double> axes[3];  ///< of its noise
+  double variance[3];    ///< along them
+  Vec3<double> r;
 };
 
 }  // namespace stg::agent

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "../gaussian_mixture.hpp"
 #include "auv_dynamics/measurements.hpp"
-#include "gaussian_mixture.hpp"
 #include "stg_agent/agent_config.hpp"
 
 namespace stg::agent {
@@ -25,6 +25,12 @@ struct StateLayout {
 
   int states() const { return kTargetStates + per_observer * observers; }
   int block(int slot) const { return kTargetStates + per_observer * slot; }
+};
+
+/// How a detection fits one normal distribution.
+struct SightingFit {
+  double distance2;  ///< squared Mahalanobis distance of the innovation
+  double density;    ///< probability density of the detection
 };
 
 /// How the target moves, and how its detections arise: the equations of the filter `measurements`
@@ -58,6 +64,15 @@ class SightingModel {
   void Update(const dynamics::Detection& d, int slot, bool mirror, GaussianMixture* mixture,
               int k) const;
 
+  /// How a detection fits component k. The covariance of the innovation includes the second order
+  /// of the linearisation.
+  SightingFit Fit(const dynamics::Detection& d, int slot, bool mirror,
+                  const GaussianMixture& mixture, int k) const;
+  /// One over the probability density of a false detection in the place of this one.
+  double ClutterVolume(const dynamics::Detection& d) const;
+  /// Share of false detections.
+  double false_share() const { return false_share_; }
+
   /// Reduces the weight of components that are faster than the target can be.
   void DoubtTheFast(double dt_s, GaussianMixture* mixture) const;
   /// Adds the mirror image of the heaviest component at the vertical plane through two observers,
@@ -72,8 +87,18 @@ class SightingModel {
  private:
   struct Geometry;  // target and observer, for one component
   struct Row;       // of a measurement matrix
+  struct Form;      // one measured number
+  struct Point;     // a measured point
   Geometry GeometryOf(const dynamics::Detection& d, int slot, const GaussianMixture& mixture,
                       int k) const;
+  Form RangeForm(const dynamics::Detection& d, int slot, const GaussianMixture& mixture,
+                 int k) const;
+  Form AzimuthForm(const dynamics::Detection& d, double azimuth_rad, int slot, const Geometry& at,
+                   const Gaussian& g) const;
+  Form ElevationForm(const dynamics::Detection& d, int slot, const Geometry& at) const;
+  Point PointOf(const dynamics::Detection& d, double azimuth_rad) const;
+  Form PointForm(const Point& point, int axis, int slot, const Geometry& at,
+                 const Gaussian& g) const;
   void UpdateRange(const dynamics::Detection& d, int slot, GaussianMixture* mixture, int k) const;
   void UpdateBearing(const dynamics::Detection& d, double azimuth_rad, int slot,
                      GaussianMixture* mixture, int k) const;

@@ -1,0 +1,42 @@
+#pragma once
+
+#include "auv_common/numbers/short_list.hpp"
+#include "auv_dynamics/measurements.hpp"
+#include "stg_agent/agent_config.hpp"
+
+namespace stg::agent {
+
+/// Decides when unlabelled detections that fit no estimate are a target without an estimate: when
+/// M of N looks have one that the same target may cause (M of N logic; Bar-Shalom and Li 1995).
+/// A false alarm seldom fits the one before it, because a target is slow.
+///
+/// Two ranges fit if they differ by no more than the ways of the target and of the observer in
+/// between, and the 99 % bound of their noise; two points likewise. Bearings alone start nothing.
+class Initiation {
+ public:
+  static constexpr int kNeeded = 4;  ///< M
+  static constexpr int kLooks = 6;   ///< N
+  using Chain = ShortList<dynamics::Detection, kNeeded>;
+
+  explicit Initiation(const AgentModel& model);
+
+  void Clear() { chain_.clear(); }
+  /// Takes the detections of one look that have no target, with stamps that rise from look to look.
+  /// Returns true if the chain is complete; Clear then starts a new one.
+  bool Look(const dynamics::Detection* detections, int count);
+  /// Detections that one target may have caused, oldest first.
+  const Chain& chain() const { return chain_; }
+
+  /// Largest difference of two detections of one target: of their ranges or points [m].
+  double Reach(const dynamics::Detection& a, const dynamics::Detection& b) const;
+
+ private:
+  bool MayStart(const dynamics::Detection& d) const;
+  bool Fits(const dynamics::Detection& a, const dynamics::Detection& b) const;
+
+  double max_speed_mps_;
+  TimeNs longest_;  // between the first and the last look
+  Chain chain_;
+};
+
+}  // namespace stg::agent

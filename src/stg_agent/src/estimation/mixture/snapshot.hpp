@@ -1,0 +1,32 @@
+#pragma once
+
+#include "observers.hpp"
+#include "surround.hpp"
+
+namespace stg::agent {
+
+/// A detection and the AUV that measured it.
+struct Sighting {
+  dynamics::Detection detection;
+  int source = 0;
+};
+
+/// State of the filter after all sightings up to a time.
+struct Snapshot {
+  Snapshot(const StateLayout& layout, const DriftModel& drift, int self, int capacity)
+      : mixture(layout.states(), capacity), observers(layout, drift, self) {}
+
+  TimeNs covers = -1;  ///< contains the sightings up to this time
+  TimeNs stamp = 0;    ///< time of the state
+  TimeNs information = 0;
+  bool observed = false;
+  Sighting last;            ///< the newest sighting in it
+  Sighting other;           ///< the newest one of another AUV
+  TimeNs third = 0;         ///< time of the last one of a third AUV
+  Surround surround;        ///< how the observers surround the target
+  TimeNs mirrored = 0;      ///< when the mirror image last got some weight
+  GaussianMixture mixture;  ///< empty: nothing is known about the target
+  Observers observers;
+};
+
+}  // namespace stg::agent
