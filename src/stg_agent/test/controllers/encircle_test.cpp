@@ -96,6 +96,7 @@ TEST(Encircle, MakesForTheMiddleBetweenThoseAheadAndBehind) {
   EncircleOptions o;
   o.lead_s = 0.0;
   o.cruise_mps = 1.0;
+  o.spread_gain = 0.5;
   o.clearance_m = o.mate_clearance_m = 1.0;
   const Knowledge<double> k = Near({90.0, 0.0, 0.0}, {0.0, 1.0, 0.0});
   const auto at = [](double degrees) {
@@ -191,7 +192,7 @@ TEST(Encircle, SpreadsOverTheDepthsOfTheScenario) {
 TEST(Encircle, IsTheSameInEveryLane) {
   const AgentModel s = Sea();
   const ControllerOf<Encircle> law(Encircle{});
-  for (std::uint32_t n = 0; n < 200; ++n) {
+  for (std::uint32_t n = 0; n < 2000; ++n) {
     Knowledge<Pack> packed;
     NeighbourSight<Pack> seen;
     double expected[kLanes][3];

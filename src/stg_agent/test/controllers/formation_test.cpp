@@ -77,14 +77,15 @@ TEST(Contain, StandsBesideTheCourse) {
   const double course = 30.0;
   const Level<double> v_T{1.5 * std::cos(course * kPi / 180.0),
                           1.5 * std::sin(course * kPi / 180.0)};
-  const Places even = Ring({course + 45.0, course - 45.0, course + 135.0, course - 135.0}, 90.0);
+  const double ring_m = ContainOptions().radius * s.task.desired_distance_m;
+  const Places even = Ring({course + 45.0, course - 45.0, course + 135.0, course - 135.0}, ring_m);
   for (int i = 0; i < 4; ++i) {
     const Level<double> v = Velocity(s, ContainOptions(), even, v_T, i);
     EXPECT_NEAR(v.x, v_T.x, 1e-6) << i;
     EXPECT_NEAR(v.y, v_T.y, 1e-6) << i;
   }
   // The AUVs are turned by 20 deg from their places, so all of them go back.
-  const Places off = Ring({course + 65.0, course - 25.0, course + 155.0, course - 115.0}, 90.0);
+  const Places off = Ring({course + 65.0, course - 25.0, course + 155.0, course - 115.0}, ring_m);
   for (int i = 0; i < 4; ++i) {
     const Level<double> v = Velocity(s, ContainOptions(), off, v_T, i);
     EXPECT_LT(Cross(off[static_cast<std::size_t>(i)], v - v_T), -1.0) << i;

@@ -29,9 +29,19 @@ struct FormationOptions {
 
 void Describe(FormationOptions* o, config::Table* t);
 
-/// The same with places symmetric to the target's course.
+/// The same with places symmetric to the target's course, and constants of its own.
 struct ContainOptions : FormationOptions {
-  ContainOptions() { slots = Slots::kCourse; }
+  ContainOptions() {
+    slots = Slots::kCourse;
+    radius = 0.83;
+    gain_ps = 0.038;
+    slow_mps = 0.89;
+    weave_below_mps = 0.53;
+    team_range_m = 386.0;
+    lead_s = 4.9;
+    clearance_m = 24.0;
+    doubt_mps = 0.19;
+  }
 };
 
 /// Each AUV has a place in an even ring around its target. The places follow the order of the AUVs'
