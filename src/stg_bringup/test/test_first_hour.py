@@ -74,6 +74,11 @@ class Help(unittest.TestCase):
             for controller in ("pursuit,", "pursuit_separated", "encircle", "idle"):
                 self.assertIn(controller, output, scenario)
 
+    def test_a_node_that_is_not_built_is_named(self):
+        program = "/nowhere/trainer_node"
+        status, output = run("/usr/bin/python3", ROOT / "src/auv_common/scripts/ends_launch", program)
+        self.assertEqual(status, 1, output)
+        self.assertIn(f"{program}: there is no such program; ./stg build", output)
 
     def test_scripts_tell_their_usage_without_a_master(self):
         for script in ("auv_common/scripts/ends_launch", "acoustic_channel/scripts/chat.py",

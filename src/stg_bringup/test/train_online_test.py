@@ -19,6 +19,7 @@ from auv_msgs.msg import AgentStep, StepReport
 from auv_msgs.srv import LoadPolicy
 from graph_listener import wait_for
 from std_msgs.msg import String
+from stg_common.stopped_trainer import learn_and_stop
 
 AGENTS, STEPS = 4, 40
 REPORT = "/step_report"
@@ -191,23 +192,7 @@ class TrainOnline(unittest.TestCase):
     def test_6_sigterm_ends_live_training_with_the_last_update_kept(self):
         folder = self.out / "stopped"
         program = roslib.packages.find_node("marl_trainer", "trainer_node")[0]
-        with subprocess.Popen(
-            [program, "__name:=stopped", f"_out:={folder}", "_episodes_per_update:=2"],
-            stdout=subprocess.PIPE,
-            universal_newlines=True,
-        ) as trainer:
-            limit = threading.Timer(40.0, trainer.kill)
-            limit.start()
-            text = ""
-            for line in trainer.stdout:
-                text += line
-                if line.startswith("update"):
-                    trainer.terminate()
-            limit.cancel()
-        self.assertEqual(trainer.returncode, 0, text)
-        self.assertRegex(text, r"trainer: stopped after [1-9]\d* updates")
-        self.assertTrue(list(folder.glob("checkpoint_*.ckpt")))
-        self.assertTrue((folder / "policy_last.onnx").exists())
+        learn_and_stop(program, folder, ["__name:=stopped", "_episodes_per_update:=2"])
 
 
 if __name__ == "__main__":

@@ -5,7 +5,6 @@ import os
 import pathlib
 import shutil
 import subprocess
-import threading
 import time
 import unittest
 
@@ -13,6 +12,7 @@ import roslib.packages
 import rosnode
 import rospy
 import rostest
+from stg_common.stopped_trainer import learn_and_stop
 
 
 class TrainField(unittest.TestCase):
@@ -37,26 +37,8 @@ class TrainField(unittest.TestCase):
 
     def learn(self, name, folder, *parameters):
         """Learns until the first update, ends the node by SIGTERM and returns what it printed."""
-        with subprocess.Popen(
-            [self.program, f"__name:={name}", f"_out:={folder}", "_episodes_per_update:=1"]
-            + list(parameters),
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            universal_newlines=True,
-        ) as trainer:
-            limit = threading.Timer(30.0, trainer.kill)
-            limit.start()
-            text = ""
-            for line in trainer.stdout:
-                text += line
-                if line.startswith("update"):
-                    trainer.terminate()
-            limit.cancel()
-        self.assertEqual(trainer.returncode, 0, text)
-        self.assertRegex(text, r"trainer: stopped after [1-9]\d* updates")
-        self.assertTrue(list(folder.glob("checkpoint_*.ckpt")))
-        self.assertTrue((folder / "policy_last.onnx").exists())
-        return text
+        words = [f"__name:={name}", "_episodes_per_update:=1", *parameters]
+        return learn_and_stop(self.program, folder, words)
 
     def refused(self, *parameters):
         """Returns the message with which the node refuses to start."""

@@ -48,6 +48,22 @@ bool IsCheckpointName(const std::string& file_name) {
   return file_name.rfind("checkpoint_", 0) == 0 && (extension == ".ckpt" || extension == ".pt");
 }
 
+void GoOnFrom(const TrainState& saved, const std::string& folder,
+              const std::function<void(const Archive& algorithm)>& load, TrainState* state) {
+  if (saved.scenario != state->scenario) {
+    throw UserError(folder + ": holds a training in another scenario");
+  }
+  try {
+    load(saved.algorithm);
+  } catch (const UserError& error) {
+    throw UserError(folder + ": holds another training: " + error.what());
+  }
+  const std::string config = state->config;
+  *state = saved;
+  state->config = config;
+  state->algorithm = Archive();  // the algorithm itself holds it now
+}
+
 void SaveCheckpoint(const TrainState& s, const std::string& path) {
   Archive archive;
   archive.PutInteger("env_steps", s.env_steps);

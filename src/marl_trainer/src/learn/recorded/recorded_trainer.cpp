@@ -123,18 +123,8 @@ RecordedTrainer::RecordedTrainer(const Scenario& scenario, const TrainSetup& set
 }
 
 void RecordedTrainer::Restore(const TrainState& state, const agent::Policy* start) {
-  if (state.scenario != state_.scenario) {
-    throw UserError(options_.out + ": holds a training in another scenario");
-  }
-  try {
-    algorithm_->Load(state.algorithm);
-  } catch (const UserError& error) {
-    throw UserError(options_.out + ": holds another training: " + error.what());
-  }
-  const std::string config = state_.config;
-  state_ = state;
-  state_.config = config;
-  state_.algorithm = Archive();
+  GoOnFrom(
+      state, options_.out, [this](const Archive& a) { algorithm_->Load(a); }, &state_);
   policy_ = std::make_shared<const agent::Policy>(MakePolicy());
   if (start != nullptr && start->metadata().id != policy_id()) {
     throw UserError(options_.out + ": holds the training of '" + policy_id() + "', not of '" +

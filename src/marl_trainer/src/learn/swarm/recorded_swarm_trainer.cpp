@@ -138,18 +138,8 @@ void RecordedSwarmTrainer::Restore(const TrainState& state, const SwarmStart& st
   if (!start.path.empty()) {
     throw UserError(options_.out + ": holds a training already; without a start policy it goes on");
   }
-  if (state.scenario != state_.scenario) {
-    throw UserError(options_.out + ": holds a training in another scenario");
-  }
-  try {
-    learner_.Load(state.algorithm);
-  } catch (const UserError& error) {
-    throw UserError(options_.out + ": holds another training: " + error.what());
-  }
-  const std::string config = state_.config;
-  state_ = state;
-  state_.config = config;
-  state_.algorithm = Archive();
+  GoOnFrom(
+      state, options_.out, [this](const Archive& a) { learner_.Load(a); }, &state_);
 }
 
 Finding RecordedSwarmTrainer::Check(const SwarmEpisode& episode) const {

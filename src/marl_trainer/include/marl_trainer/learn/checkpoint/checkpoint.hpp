@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <ostream>
 #include <string>
@@ -25,6 +26,11 @@ struct TrainState {
   Archive algorithm;     ///< written by Algorithm::Save
   Archive episodes;      ///< written by Collector::Save
 };
+
+/// Goes on from a saved state, with the options of `state`. Throws UserError, which names the
+/// folder, if the saved training had another scenario or if `load` refuses the algorithm's part.
+void GoOnFrom(const TrainState& saved, const std::string& folder,
+              const std::function<void(const Archive& algorithm)>& load, TrainState* state);
 
 /// See WriteArchive.
 void SaveCheckpoint(const TrainState& state, const std::string& path);
