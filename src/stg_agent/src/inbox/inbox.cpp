@@ -16,6 +16,8 @@ Inbox::Inbox(SharedConstants constants, int id)
       first_(constants_->model.task.free() ? 0 : constants_->model.target.of(id)),
       target_(constants_->model.target.of(id)),
       pending_(static_cast<std::size_t>(constants_->model.beliefs())),
+      confirmations_(static_cast<std::size_t>(constants_->model.beliefs()),
+                     Confirmation(constants_->model)),
       localizer_(MakeLocalizer(constants_->model, id_)) {
   if (!constants_->model.sensing.labelled) unlabelled_.emplace(constants_->model, id_);
   if (constants_->model.surfaces()) surfacing_.emplace(constants_->model, id_);
@@ -34,6 +36,7 @@ void Inbox::Reset(std::uint32_t episode, const dynamics::Cue& cue) {
   if (surfacing_) surfacing_->Reset();
   if (unlabelled_) unlabelled_->Clear();
   for (Pending& pending : pending_) pending = Pending();
+  for (Confirmation& confirmation : confirmations_) confirmation.Clear();
   target_ = constants_->model.target.of(id_);
   changed_ = false;
   wanted_ = -1;
@@ -158,7 +161,7 @@ void Inbox::Advance(TimeNs now, const NeighbourTable& neighbours, const OwnRecko
   for (std::size_t k = 0; k < filters_.size(); ++k) {
     Pending& pending = pending_[k];
     if (pending.has_detection && pending.detection.stamp <= now_) {
-      filters_[k]->Detect(pending.detection);
+      if (confirmations_[k].Take(pending.detection)) filters_[k]->Detect(pending.detection);
       pending.has_detection = false;
     }
     filters_[k]->Settle(now_, frame);

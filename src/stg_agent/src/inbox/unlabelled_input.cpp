@@ -14,7 +14,8 @@ UnlabelledInput::UnlabelledInput(const AgentModel& model, int self)
     : self_(self),
       same_(std::max<TimeNs>(1, model.run.decision_period() / 16)),
       heard_(static_cast<std::size_t>(model.run.agents)),
-      initiation_(model) {
+      initiation_(model),
+      confirmations_(static_cast<std::size_t>(model.beliefs()), Confirmation(model)) {
   pending_.reserve(kMostPending);
   for (Heard& heard : heard_) heard.ring.reserve(kMostHeard);
   Clear();
@@ -27,6 +28,7 @@ void UnlabelledInput::Clear() {
     heard.next = 0;
   }
   initiation_.Clear();
+  for (Confirmation& confirmation : confirmations_) confirmation.Clear();
   own_detections_.fill(-1);
 }
 
@@ -127,11 +129,13 @@ void UnlabelledInput::GiveLook(const Input* look, int count, Filters* filters) {
   }
 }
 
-void UnlabelledInput::Take(int target, const Input& input, Filters* filters) {
+void UnlabelledInput::Take(int target, const Input& input, Filters* filters, bool starts) {
   TargetFilter& filter = *(*filters)[static_cast<std::size_t>(target)];
   Detection d = input.detection;
   d.target = target;
   if (input.source == self_) {
+    const bool supported = confirmations_[static_cast<std::size_t>(target)].Take(d);
+    if (!supported && !starts) return;
     filter.Detect(d);
     TimeNs& newest = own_detections_[static_cast<std::size_t>(target)];
     newest = std::max(newest, d.stamp);
@@ -151,7 +155,7 @@ void UnlabelledInput::StartMissing(const Detection* free, int count, Filters* fi
   });
   if (missing == filters->end()) return;
   const int target = static_cast<int>(missing - filters->begin());
-  for (const Detection& d : initiation_.chain()) Take(target, {d, self_}, filters);
+  for (const Detection& d : initiation_.chain()) Take(target, {d, self_}, filters, true);
   initiation_.Clear();
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "acoustic_channel/modem/packet.hpp"
+#include "auv_common/numbers/vector.hpp"
 #include "stg_agent/agent_config.hpp"
 
 namespace stg::agent {

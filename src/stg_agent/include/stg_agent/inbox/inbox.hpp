@@ -12,6 +12,7 @@
 #include "stg_agent/graph/neighbour_table.hpp"
 #include "stg_agent/graph/target_view.hpp"
 #include "stg_agent/inbox/agent_constants.hpp"
+#include "stg_agent/inbox/confirmation.hpp"
 #include "stg_agent/inbox/unlabelled_input.hpp"
 #include "stg_agent/localization/localizer.hpp"
 #include "stg_agent/localization/surfacing.hpp"
@@ -119,6 +120,7 @@ class Inbox {
   int wanted_ = -1;       // target to follow from the next Advance on; -1: no change
   std::vector<std::unique_ptr<TargetFilter>> filters_;  // of targets first_, first_ + 1, ...
   std::vector<Pending> pending_;                        // likewise
+  std::vector<Confirmation> confirmations_;             // likewise, of labelled detections
   std::unique_ptr<Localizer> localizer_;                // null: none is chosen
   std::optional<Surfacing> surfacing_;
   std::optional<UnlabelledInput> unlabelled_;  // not with labelled detections

@@ -29,10 +29,11 @@ class Initiation {
 
   /// Largest difference of two detections of one target: of their ranges or points [m].
   double Reach(const dynamics::Detection& a, const dynamics::Detection& b) const;
+  /// True if one target may have caused both. Not for bearings.
+  bool Fits(const dynamics::Detection& a, const dynamics::Detection& b) const;
 
  private:
   bool MayStart(const dynamics::Detection& d) const;
-  bool Fits(const dynamics::Detection& a, const dynamics::Detection& b) const;
 
   double max_speed_mps_;
   TimeNs longest_;  // between the first and the last look

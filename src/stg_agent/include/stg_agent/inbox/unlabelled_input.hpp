@@ -6,6 +6,7 @@
 
 #include "stg_agent/estimation/association.hpp"
 #include "stg_agent/estimation/target_filter.hpp"
+#include "stg_agent/inbox/confirmation.hpp"
 #include "stg_agent/inbox/initiation.hpp"
 
 namespace stg::agent {
@@ -56,7 +57,8 @@ class UnlabelledInput {
   static bool Before(const Input& a, const Input& b);
   bool Same(const dynamics::Detection& a, const dynamics::Detection& b) const;
   void GiveLook(const Input* look, int count, Filters* filters);
-  void Take(int target, const Input& input, Filters* filters);
+  /// @param starts it is one of those that start an estimate, which support each other
+  void Take(int target, const Input& input, Filters* filters, bool starts = false);
   void StartMissing(const dynamics::Detection* free, int count, Filters* filters);
 
   int self_;
@@ -65,7 +67,8 @@ class UnlabelledInput {
   std::vector<Heard> heard_;  // [agents]
   LookAssignment assignment_;
   Initiation initiation_;
-  NeighbourState shared_;  // one measurement of a packet
+  std::vector<Confirmation> confirmations_;  // [targets]
+  NeighbourState shared_;                    // one measurement of a packet
   std::array<TimeNs, dynamics::kMostTargets> own_detections_{};
 };
 
