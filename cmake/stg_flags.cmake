@@ -50,6 +50,10 @@ stg_resolve_march(stg_march)
 # No fused multiply-adds: the compiler might use them in SIMD code and not in scalar code, or the
 # other way round. Then the two would round differently.
 set(STG_ABI_OPTIONS -ffp-contract=off)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # GCC 12 fuses them in spite of that option where it vectorises straight-line code.
+  list(APPEND STG_ABI_OPTIONS -fno-tree-slp-vectorize)
+endif()
 if(stg_march)
   list(PREPEND STG_ABI_OPTIONS -march=${stg_march})
 endif()

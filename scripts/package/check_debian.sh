@@ -136,7 +136,7 @@ march=
 [[ "${sets[*]}" != *x86-64-v3 ]] || march=-march=x86-64-v3
 WITH_NET=1 timed "a compiler (downloads)" inside "$compiler --download-only"
 timed "apt-get install stg-dev and a compiler" inside "$compiler"
-timed "a plugin, compiled and flown" inside "g++ -std=c++17 -O2 -ffp-contract=off $march -fPIC -shared -o liborbit.so \
+timed "a plugin, compiled and flown" inside "g++ -std=c++17 -O2 -ffp-contract=off -fno-tree-slp-vectorize $march -fPIC -shared -o liborbit.so \
   /usr/share/stg_bringup/examples/controller/orbit.cpp \$(pkg-config --cflags --libs stg_env) && \
   rosrun marl_trainer evaluate --plugin ./liborbit.so --policy orbit --scenario medium --episodes 1"
 

@@ -55,7 +55,7 @@ def run(*command, **changed):
 
 def instruction_set(flags):
     """Returns the flags that decide about layout and rounding."""
-    return sorted(set(re.findall(r"-march=[\w.-]+|-ffp-contract=\w+", flags)))
+    return sorted(set(re.findall(r"-march=[\w.-]+|-ffp-contract=\w+|-fno-tree-slp-vectorize", flags)))
 
 
 class PlainCMake(unittest.TestCase):

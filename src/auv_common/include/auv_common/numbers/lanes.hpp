@@ -74,15 +74,27 @@ inline Pack Log1p(const Pack& a) { return xsimd::log1p(a); }
 inline double Log1p(double a) { return Log1p(Pack(a)).get(0); }
 inline Pack Atan2(const Pack& y, const Pack& x) { return xsimd::atan2(y, x); }
 inline double Atan2(double y, double x) { return Atan2(Pack(y), Pack(x)).get(0); }
+/// An angle within +-20 pi with the same sine and cosine. xsimd reduces all lanes by the method
+/// that the largest of them needs, and above 20 pi the last digit of a lane then depends on the
+/// others.
+inline Pack NearAngle(const Pack& a) {
+  constexpr double kMost = 62.0, kTurn = 6.283185307179586;
+  // Parts of 2 pi: the first one has 20 free digits, so its product with a count is exact.
+  constexpr double kHigh = 6.2831853069365025, kLow = kTurn - kHigh, kRest = 2.4492935982947064e-16;
+  const Pack turns = xsimd::nearbyint(a * (1.0 / kTurn));
+  const Pack near = ((a - turns * kHigh) - turns * kLow) - turns * kRest;
+  return xsimd::select(xsimd::abs(a) > kMost, xsimd::clip(near, Pack(-kMost), Pack(kMost)), a);
+}
 inline void SinCos(const Pack& a, Pack* s, Pack* c) {
-  const auto sc = xsimd::sincos(a);
+  const auto sc = xsimd::sincos(NearAngle(a));
   *s = sc.first;
   *c = sc.second;
 }
 inline void SinCos(double a, double* s, double* c) {
-  const auto sc = xsimd::sincos(Pack(a));
-  *s = sc.first.get(0);
-  *c = sc.second.get(0);
+  Pack ps, pc;
+  SinCos(Pack(a), &ps, &pc);
+  *s = ps.get(0);
+  *c = pc.get(0);
 }
 
 /// Nearest number with float32's 24-bit significand, by Veltkamp's splitting. A pair of casts would
