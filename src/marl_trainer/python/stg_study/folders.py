@@ -8,8 +8,9 @@ from stg_study.files import locked, write_atomically
 from stg_study.study import StudyError
 
 
-def program_folder(given):
-    """Folder of the programs train and evaluate."""
+def program_folder(given, trains=True):
+    """Folder of the program evaluate and, for a study that trains, of train."""
+    needed = ("train", "evaluate") if trains else ("evaluate",)
     if given:
         candidates = [given]
     else:
@@ -17,11 +18,11 @@ def program_folder(given):
         candidates = [os.path.join(p, "lib", "marl_trainer") for p in prefixes if p]
         candidates.append(os.path.dirname(os.path.realpath(sys.argv[0])))
     for folder in candidates:
-        if all(os.access(os.path.join(folder, name), os.X_OK) for name in ("train", "evaluate")):
+        if all(os.access(os.path.join(folder, name), os.X_OK) for name in needed):
             return os.path.realpath(folder)
     raise StudyError(
-        f"train and evaluate are not in {', '.join(candidates)}; build and source the workspace, "
-        "or name their folder with --bin"
+        f"{' and '.join(needed)} not found in {', '.join(candidates)}; build and source the "
+        "workspace, or name their folder with --bin"
     )
 
 
