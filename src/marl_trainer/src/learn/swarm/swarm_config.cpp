@@ -138,7 +138,8 @@ std::vector<SwarmTask> FieldMixture(const std::string& folder, const std::string
 
 std::vector<SwarmTask> FieldValidation(const std::string& folder, const std::string& scenario) {
   std::vector<SwarmTask> tasks;
-  for (const char* condition : {"nominal", "combined_stress", "fast_target", "strong_current"}) {
+  for (const char* condition :
+       {"nominal", "combined_stress", "fast_target", "strong_current", "sparse"}) {
     tasks.push_back({condition, LoadNamedScenario(folder, scenario, condition)});
   }
   for (const char* name : {"hunt", "search"}) {
