@@ -240,6 +240,11 @@ class Client:
         self.connections = [None] * len(services)
         self.source = random.Random(seed)
 
+    def connect(self):
+        """Opens all connections. Without it, one that opens at the first call looks like a lost file."""
+        for index, pool in enumerate(self.pools):
+            self.connections[index] = Connection(pool.service)
+
     def call(self):
         """Makes one call. Returns (index of the service, kind, what came of it)."""
         (index,) = self.source.choices(range(len(self.pools)), self.weights)

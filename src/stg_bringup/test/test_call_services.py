@@ -71,7 +71,7 @@ class Graphs(unittest.TestCase):
     """A few thousand calls of each graph."""
 
     def check(self, graph, clients):
-        run = subprocess.run([str(SCRIPT), "--graph", graph, "--calls", "2000", "--clients", clients],
+        run = subprocess.run([str(SCRIPT), "--graph", graph, "--calls", "8000", "--clients", clients],
                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True,
                              check=False)
         self.assertEqual(run.returncode, 0, run.stdout)
