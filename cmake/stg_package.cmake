@@ -44,6 +44,14 @@ function(stg_use target scope)
   endforeach()
 endfunction()
 
+# stg_core_sources(RESULT): finds the sources of a core, which are all below src/, except those of nodes
+# and command-line programs. The next build finds a new file by itself.
+function(stg_core_sources result)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} src/*.cpp)
+  list(FILTER sources EXCLUDE REGEX "^src/(nodes|tools)/")
+  set(${result} ${sources} PARENT_SCOPE)
+endfunction()
+
 # stg_core_library(TARGET [PACKAGE ...]): sets up a library of a core that uses the cores of other
 # packages. Plain CMake adds it to the export set STG_EXPORT.
 set(STG_EXPORT stgTargets)

@@ -12,8 +12,8 @@
 #include "auv_common/error.hpp"
 #include "auv_common/stop_signals.hpp"
 #include "declared_options.hpp"
-#include "marl_trainer/learn/comm/mpi.hpp"
 #include "marl_trainer/learn/run/trainer.hpp"
+#include "ranks/mpi.hpp"
 #include "stg_env/scenario/scenario.hpp"
 
 namespace {

@@ -1,5 +1,5 @@
 #include "auv_common/error.hpp"
-#include "marl_trainer/learn/comm/mpi.hpp"
+#include "mpi.hpp"
 #include "started_by_mpi.hpp"
 
 namespace stg::learn {

@@ -1,4 +1,4 @@
-#include "marl_trainer/learn/comm/mpi.hpp"
+#include "mpi.hpp"
 
 #define OMPI_SKIP_MPICXX 1  // only the C interface
 #include <mpi.h>
