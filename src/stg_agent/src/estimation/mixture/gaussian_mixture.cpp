@@ -20,14 +20,18 @@ constexpr double kOuterWeight = 0.2252246249;
 constexpr double kOffset = 1.0575154615;
 constexpr double kKept = 1.0 - 2.0 * kOuterWeight * kOffset * kOffset;
 
+double* Allocate(std::size_t numbers) {
+  return static_cast<double*>(::operator new(numbers * sizeof(double), kAlignment));
+}
+
 }  // namespace
 
 GaussianMixture::GaussianMixture(int states, int capacity)
     : states_(states),
-      stride_((states + 3) & ~3),  // full registers
+      stride_((states + kRegister - 1) / kRegister * kRegister),
       capacity_(capacity),
-      step_(static_cast<std::size_t>(1 + stride_ + stride_ * stride_)),
-      data_(new double[step_ * static_cast<std::size_t>(capacity)]) {}
+      step_(static_cast<std::size_t>(kRegister + stride_ + stride_ * stride_)),
+      data_(Allocate(step_ * static_cast<std::size_t>(capacity))) {}
 
 GaussianMixture::GaussianMixture(const GaussianMixture& other)
     : GaussianMixture(other.states_, other.capacity_) {
@@ -81,20 +85,20 @@ void GaussianMixture::Normalise() {
 }
 
 void GaussianMixture::Split(int k, const double* Pa, double variance) {
+  assert(size_ + 2 <= capacity_);
   const double scale = 1.0 / std::sqrt(variance);
-  const Gaussian middle = at(k);
-  for (int r = 0; r < states_; ++r) {
-    const double f = (1.0 - kKept) * scale * scale * Pa[r];
-    double* row = middle.P + r * stride_;
-    for (int c = 0; c < states_; ++c) row[c] -= f * Pa[c];
+  const Gaussian middle = at(k), left = at(size_), right = at(size_ + 1);
+  size_ += 2;
+  for (int r = 0; r < stride_; ++r) {
+    const double f = (1.0 - kKept) * scale * scale * Pa[r], offset = kOffset * scale * Pa[r];
+    left.x[r] = middle.x[r] - offset;
+    right.x[r] = middle.x[r] + offset;
+    double *row = middle.P + r * stride_, *row_l = left.P + r * stride_,
+           *row_r = right.P + r * stride_;
+    for (int c = 0; c < stride_; ++c) row_l[c] = row_r[c] = row[c] -= f * Pa[c];
   }
-  const double weight = *middle.weight;
-  for (const double side : {-1.0, 1.0}) {
-    const Gaussian outer = Copy(k);
-    *outer.weight = weight * kOuterWeight;
-    for (int r = 0; r < states_; ++r) outer.x[r] += side * kOffset * scale * Pa[r];
-  }
-  *middle.weight = weight * (1.0 - 2.0 * kOuterWeight);
+  *left.weight = *right.weight = *middle.weight * kOuterWeight;
+  *middle.weight *= 1.0 - 2.0 * kOuterWeight;
 }
 
 double GaussianMixture::Separation(int i, int j) const {
@@ -121,10 +125,11 @@ void GaussianMixture::Merge(int into, int from) {
   const double sum = *a.weight + *b.weight, wa = *a.weight / sum, wb = *b.weight / sum;
   const double spread = wa * wb;
   for (int r = 0; r < states_; ++r) {
-    const double dr = a.x[r] - b.x[r];
-    for (int c = 0; c < states_; ++c) {
-      const int i = r * stride_ + c;
-      a.P[i] = wa * a.P[i] + wb * b.P[i] + spread * dr * (a.x[c] - b.x[c]);
+    const double f = spread * (a.x[r] - b.x[r]);
+    double* into_row = a.P + r * stride_;
+    const double* from_row = b.P + r * stride_;
+    for (int c = 0; c < stride_; ++c) {  // beyond the states are zeros
+      into_row[c] = wa * into_row[c] + wb * from_row[c] + f * (a.x[c] - b.x[c]);
     }
   }
   for (int r = 0; r < states_; ++r) a.x[r] = wa * a.x[r] + wb * b.x[r];

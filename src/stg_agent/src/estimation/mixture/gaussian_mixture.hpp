@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <new>
 
 #include "auv_common/numbers/vector.hpp"
 
@@ -16,6 +17,10 @@ struct Gaussian {
 };
 
 inline constexpr int kTargetStates = 6;
+/// Weight, x and each row of P begin at full registers of this many numbers. A load across two
+/// lines of the cache takes longer.
+inline constexpr int kRegister = 4;
+inline constexpr std::align_val_t kAlignment{kRegister * sizeof(double)};
 
 /// Weighted normal distributions over one state. The capacity is fixed, and nothing is allocated
 /// after construction. The cost of a copy is proportional to the number of components.
@@ -35,7 +40,7 @@ class GaussianMixture {
 
   Gaussian at(int k) const {
     double* p = data_.get() + static_cast<std::size_t>(k) * step_;
-    return {p, p + 1, p + 1 + stride_};
+    return {p, p + kRegister, p + kRegister + stride_};
   }
   /// Forgets all components.
   void Clear() { size_ = 0; }
@@ -63,12 +68,16 @@ class GaussianMixture {
   void MergeNearest();
   double Separation(int a, int b) const;
 
+  struct Free {
+    void operator()(double* p) const { ::operator delete(p, kAlignment); }
+  };
+
   int states_, stride_, capacity_;
   std::size_t step_;  // numbers per component
   int size_ = 0;
   // Memory is only written when it is needed. Most mixtures have one component most of the time,
   // and untouched memory costs nothing.
-  std::unique_ptr<double[]> data_;
+  std::unique_ptr<double[], Free> data_;
 };
 
 }  // namespace stg::agent

@@ -268,10 +268,11 @@ class MeasurementFilter : public TargetFilter {
   /// Splits components that are too wide for the linearisation of a detection, the heaviest first.
   void SplitFor(const Detection& d, int slot) {
     GaussianMixture& mixture = now_.mixture;
-    std::array<double, kMostComponents> excess;
-    double Pa[64], variance = 0.0;
+    std::array<double, kMostComponents> excess, variance;
+    alignas(32) double Pa[kMostComponents][kMostStride];
     const auto measure = [&](int k) {
-      excess[static_cast<std::size_t>(k)] = model_.Excess(d, slot, mixture, k, Pa, &variance);
+      const auto i = static_cast<std::size_t>(k);
+      excess[i] = model_.Excess(d, slot, mixture, k, Pa[i], &variance[i]);
     };
     for (int k = 0; k < mixture.size(); ++k) measure(k);
     while (mixture.size() + 2 <= mixture.capacity()) {
@@ -286,8 +287,7 @@ class MeasurementFilter : public TargetFilter {
         }
       }
       if (worst < 0) return;
-      measure(worst);  // for the column of this component
-      mixture.Split(worst, Pa, variance);
+      mixture.Split(worst, Pa[worst], variance[static_cast<std::size_t>(worst)]);
       measure(worst);
       measure(mixture.size() - 2);
       measure(mixture.size() - 1);

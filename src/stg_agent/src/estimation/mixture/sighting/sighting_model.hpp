@@ -6,6 +6,12 @@
 
 namespace stg::agent {
 
+/// Number of observers with separate errors. In larger swarms, they are the last ones with a
+/// packet.
+inline constexpr int kMostObservers = 8;
+inline constexpr int kMostStates = kTargetStates + 5 * kMostObservers;
+inline constexpr int kMostStride = (kMostStates + 3) / 4 * 4;
+
 /// Positions of the observers' errors in the state. Each observer has two of position (east,
 /// north). It has one of heading if directions are measured. With `rates` it has two of the
 /// velocity at which the position error grows. There are none while navigation is perfect. With

@@ -8,12 +8,6 @@
 /// Parts of the equations of SightingModel.
 namespace stg::agent {
 
-/// Number of observers with separate errors. In larger swarms, they are the last ones with a
-/// packet.
-inline constexpr int kMostObservers = 8;
-inline constexpr int kMostStates = kTargetStates + 5 * kMostObservers;
-inline constexpr int kMostStride = (kMostStates + 3) & ~3;
-
 /// The line from the observer to the target and its covariance, including errors of the observer.
 struct SightingModel::Geometry {
   Vec3<double> d;       ///< target minus observer

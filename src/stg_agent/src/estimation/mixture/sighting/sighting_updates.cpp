@@ -82,7 +82,7 @@ double SightingModel::Excess(const Detection& d, int slot, const GaussianMixture
 /// Returns the likelihood of the innovation. Does not change the weight.
 double SightingModel::Take(const Row& row, double innovation, double variance, double alike,
                            double clutter, Gaussian g, int stride) const {
-  double column[kMostStride];
+  alignas(32) double column[kMostStride];
   const double s = row.Times(g, stride, column) + variance;
   const double own = (1.0 - false_share_) * NormalDensity(innovation * innovation / s, s);
   const double likelihood = own + false_share_ * clutter;
@@ -95,7 +95,7 @@ double SightingModel::Take(const Row& row, double innovation, double variance, d
 /// it, approximated by its moments.
 void SightingModel::Apply(const Row& row, double innovation, double variance, double truth,
                           Gaussian g, int stride) const {
-  double column[kMostStride];
+  alignas(32) double column[kMostStride];
   const double inverse = 1.0 / (row.Times(g, stride, column) + variance);
   const double gain = truth * inverse * innovation;
   const double spread = innovation * innovation * inverse;
