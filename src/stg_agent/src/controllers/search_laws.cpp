@@ -14,6 +14,7 @@ using config::NonNegative;
 constexpr int kCourses = 64;
 /// Value of a plan's leg if the course leads to a target that was found.
 constexpr int kCloseIn = -1;
+constexpr double kGiveUpLooks = 6.0;
 
 Encircle CircleOf(const FoundOptions& found) {
   EncircleOptions o;
@@ -122,20 +123,25 @@ class MapLaw final : public SearchLaw {
 
 }  // namespace
 
+bool TooFastToCircle(const AgentModel& model) {
+  return model.target.max_speed_mps > EncircleOptions{}.cruise_mps;
+}
+
 void DescribeFound(FoundOptions* o, config::Table* t) {
   t->Add("give-up", &o->give_up_s, NonNegative(1e5), "s",
-         "the search begins again after this time without an observation");
+         "the search begins again after this time without an observation; 0: after six periods of "
+         "the sensor");
   t->Add("fast", &o->fast_mps, NonNegative(100), "m/s", "largest speed over ground");
-  t->Add("form", &o->form, config::kFraction, "-",
+  t->Add("form", &o->form, {-1.0, 1.0}, "-",
          "after the target is found, 0: the AUV circles it, as encircle; 1: it keeps a place, as "
-         "formation");
+         "formation; -1: it keeps a place if the target may be faster than encircle's cruise");
   t->Add("certain", &o->certain_m, NonNegative(1e5), "m",
          "the AUV approaches the target by the map while the estimate's standard deviation is "
          "above this; 0: never");
   t->Add("close-reach", &o->close_reach_m, config::Positive(1e5), "m",
          "distance over which the map's mass counts during that approach");
   t->Add("team-range", &o->team_range_m, NonNegative(1e5), "m",
-         "form=1: AUVs farther from the target than this have no place in the ring");
+         "AUVs farther from the target than this have no place in the ring");
 }
 
 SearchLaw::SearchLaw(const FoundOptions& found)
@@ -143,11 +149,21 @@ SearchLaw::SearchLaw(const FoundOptions& found)
 
 template <class T>
 void SearchLaw::Follow(const ControllerInput<T>& in, const Guidance<T>& guidance, T* action) const {
-  if (found_.form > 0.5) {
+  if (KeepsPlaces(in.model)) {
     form_.Act(in, guidance, action);
   } else {
     circle_.Act(in, guidance, action);
   }
+}
+
+bool SearchLaw::KeepsPlaces(const AgentModel& model) const {
+  if (found_.form >= 0.0) return found_.form > 0.5;
+  return TooFastToCircle(model);
+}
+
+double SearchLaw::GiveUp_s(const AgentModel& model) const {
+  if (found_.give_up_s > 0.0) return found_.give_up_s;
+  return kGiveUpLooks * std::max(model.sensing.period_s, model.run.decision_dt_s());
 }
 
 void SearchLaw::Act(const ControllerInput<double>& in, double* action) const {
@@ -174,7 +190,7 @@ void SearchLaw::Act(const AgentView& agent, const Guidance<double>& guidance, bo
   const ControllerInput<double> in{agent.model(), agent.id(), k, nearest.begin(), nearest.size()};
   const TargetBelief belief = agent.belief();
   const bool found = !searches && belief.started && belief.observed &&
-                     Seconds(search->now() - belief.information) <= found_.give_up_s;
+                     Seconds(search->now() - belief.information) <= GiveUp_s(agent.model());
   if (found && Certain(belief)) {
     search->plan.made = false;
     Follow(in, guidance, action);

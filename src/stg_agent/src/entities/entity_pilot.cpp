@@ -22,22 +22,14 @@ void Steer(const AgentView& agent, const Guidance<double>& guidance, double* act
   law.Act(InputOf(agent, nearest), guidance, action);
 }
 
-SearchMapOptions SearchForm(double form) {
-  SearchMapOptions o;
-  o.form = form;
-  return o;
-}
-
 /// The law that `law5` guides. With a search map it is `search_map`; without one it is the part of
 /// that law for a target that is found. A target that may be faster than the AUVs' cruise speed
 /// would leave a circle, so AUVs then keep a place relative to it.
 void SteerLaw(const AgentView& agent, const Guidance<double>& guidance, double* action) {
-  static const std::unique_ptr<SearchLaw> circling = MakeSearchMap(SearchForm(0.0));
-  static const std::unique_ptr<SearchLaw> keeping = MakeSearchMap(SearchForm(1.0));
-  const bool fast = agent.model().target.max_speed_mps > EncircleOptions{}.cruise_mps;
+  static const std::unique_ptr<SearchLaw> searching = MakeSearchMap({});
   if (agent.search() != nullptr) {
-    (fast ? keeping : circling)->Act(agent, guidance, agent.memory().search, action);
-  } else if (fast) {
+    searching->Act(agent, guidance, agent.memory().search, action);
+  } else if (TooFastToCircle(agent.model())) {
     const NearestSights nearest = agent.Nearest();
     Formation{}.Act(InputOf(agent, nearest), guidance, action);
   } else {

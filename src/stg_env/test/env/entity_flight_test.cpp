@@ -32,23 +32,28 @@ std::vector<double> Decided(const agent::Decider& c, TestEnv* env) {
   return a;
 }
 
-/// Commands of zero must give exactly the actions of `law`. The test flies two copies of the same
-/// waters, because a law that searches writes its plan into the agent.
+/// Returns the first of so many steps at which two deciders act differently, or -1. It flies two
+/// copies of the same waters, because a law that searches writes its plan into the agent.
+int FirstDifference(const agent::Decider& a, const agent::Decider& b, const Scenario& s,
+                    int steps) {
+  TestEnv env(s), other(s);
+  env.Reset();
+  other.Reset();
+  for (int k = 0; k < steps; ++k) {
+    const std::vector<double> ours = Decided(a, &env), theirs = Decided(b, &other);
+    if (std::memcmp(ours.data(), theirs.data(), ours.size() * sizeof(double)) != 0) return k;
+    env.VectorEnv::Step(ours.data(), env.memory.arrays());
+    other.VectorEnv::Step(theirs.data(), other.memory.arrays());
+  }
+  return -1;
+}
+
+/// Commands of zero must give exactly the actions of `law`.
 void ExpectZerosAre(agent::EntityAction action, const std::string& law, const Scenario& s,
                     agent::EntityNetwork network = agent::EntityNetwork::kPool) {
   agent::Decider guided;
   guided.entities = PolicyOf(action, 0.0, network);
-  const agent::Decider alone = agent::MakeDecider(law, s.model());
-  TestEnv env(s), other(s);
-  env.Reset();
-  other.Reset();
-  for (int k = 0; k < 110; ++k) {
-    const std::vector<double> ours = Decided(guided, &env), theirs = Decided(alone, &other);
-    ASSERT_EQ(std::memcmp(ours.data(), theirs.data(), ours.size() * sizeof(double)), 0)
-        << law << " " << k;
-    env.VectorEnv::Step(ours.data(), env.memory.arrays());
-    other.VectorEnv::Step(theirs.data(), other.memory.arrays());
-  }
+  EXPECT_EQ(FirstDifference(guided, agent::MakeDecider(law, s.model()), s, 110), -1) << law;
 }
 
 TEST(EntityFlight, CommandsOfZeroAreEncircleBitForBit) {
@@ -61,13 +66,29 @@ TEST(EntityFlight, CommandsOfZeroAreTheLawOfTheSituationBitForBit) {
     const char *law, *scenario, *condition;
   } cases[] = {{"encircle", "field", "nominal"},
                {"formation", "field", "fast_target"},
-               {"search_map:form=1", "field", "combined_stress"},
+               {"search_map", "field", "combined_stress"},
                {"search_map", "search", "nominal"}};
   for (const auto& c : cases) {
     ExpectZerosAre(agent::EntityAction::kLaw5, c.law, Short(Shipped(c.scenario, c.condition), 120));
   }
   ExpectZerosAre(agent::EntityAction::kLaw5, "search_map", Short(Shipped("search"), 60),
                  agent::EntityNetwork::kGraph);
+}
+
+/// The defaults of `search_map` depend on the speed of the target and on the period of the sensor,
+/// which is 5 s in `search` and 30 s in `sparse`.
+TEST(EntityFlight, DefaultsOfTheSearchFitTargetAndSensor) {
+  const auto first = [](const Scenario& s, const std::string& law) {
+    return FirstDifference(agent::MakeDecider("search_map", s.model()),
+                           agent::MakeDecider(law, s.model()), s, s.run.time.episode_steps);
+  };
+  const Scenario search = Short(Shipped("search"), 1500);
+  EXPECT_EQ(first(search, "search_map:form=0,give-up=30"), -1);
+  EXPECT_GT(first(search, "search_map:form=1,give-up=30"), 0);
+  const Scenario sparse = Short(Shipped("field", "sparse"), 1500);
+  EXPECT_EQ(first(sparse, "search_map:form=1,give-up=180"), -1);
+  EXPECT_GT(first(sparse, "search_map:form=0,give-up=180"), 0);
+  EXPECT_GT(first(sparse, "search_map:form=1,give-up=30"), 0);
 }
 
 TEST(EntityFlight, WhileItSearchesACommandTurnsTheCourse) {

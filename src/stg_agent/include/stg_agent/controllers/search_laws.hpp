@@ -5,21 +5,29 @@
 #include "stg_agent/controllers/encircle.hpp"
 #include "stg_agent/controllers/formation.hpp"
 
-/// Controllers that search for a target that no AUV detects, and circle it when it is found:
+/// Controllers that search for a target that no AUV detects, and surround it when it is found:
 /// `search_map`, `greedy_search`, `parallel_sweep`, `expanding_square`. They need the agents'
 /// search map (track.search_cell_m).
 namespace stg::agent {
 
+/// Whether the target may be faster than the cruise speed of `encircle`. It would leave a circle,
+/// so AUVs keep places around it.
+bool TooFastToCircle(const AgentModel& model);
+
 /// What all of them do after the target is found.
 struct FoundOptions {
-  double give_up_s = 120.0;  ///< the search begins again after this time without an observation
-  double fast_mps = 2.3;     ///< largest speed over ground
-  double form = 0.0;  ///< 0: circle the target, as `encircle`; 1: keep a place, as `formation`
+  /// The search begins again after this time without an observation. 0: after six periods of the
+  /// sensor.
+  double give_up_s = 0.0;
+  double fast_mps = 2.3;  ///< largest speed over ground
+  /// 0: circle the target, as `encircle`; 1: keep a place, as `formation`; below 0: keep a place if
+  /// TooFastToCircle.
+  double form = -1.0;
   /// With a standard deviation above this, an estimate may be the mean of several possible places.
   /// The AUV then flies to the most probable place of the map, not around the mean. 0: never.
-  double certain_m = 0.0;
+  double certain_m = 150.0;
   double close_reach_m = 500.0;  ///< distance over which the map's mass counts then
-  double team_range_m = 600.0;   ///< form=1: AUVs farther from the target have no place
+  double team_range_m = 600.0;   ///< AUVs farther from the target have no place in the ring
 };
 
 void DescribeFound(FoundOptions* o, config::Table* t);
@@ -81,6 +89,8 @@ class SearchLaw : public Controller {
  private:
   template <class T>
   void Follow(const ControllerInput<T>& input, const Guidance<T>& guidance, T* action) const;
+  bool KeepsPlaces(const AgentModel& model) const;
+  double GiveUp_s(const AgentModel& model) const;
   /// Whether the target's estimate is certain enough (certain_m).
   bool Certain(const TargetBelief& belief) const;
   /// A point in the direction of most of the near mass, relative to the own position [m].
