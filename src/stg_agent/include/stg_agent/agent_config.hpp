@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -82,6 +83,8 @@ struct AgentModel {
   /// Now and then one of them goes up for a fix by satellite.
   bool surfaces() const { return locates() && localization.surface_std_m > 0.0; }
   int observation_size() const { return ObservationSpec(observation).size(); }
+  /// Time between two looks of the sensor of the target [s].
+  double look_period_s() const { return std::max(sensing.period_s, run.decision_dt_s()); }
   /// Number of targets that each AUV estimates.
   int beliefs() const { return task.free() ? target.count : 1; }
 };

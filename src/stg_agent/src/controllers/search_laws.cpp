@@ -163,7 +163,7 @@ bool SearchLaw::KeepsPlaces(const AgentModel& model) const {
 
 double SearchLaw::GiveUp_s(const AgentModel& model) const {
   if (found_.give_up_s > 0.0) return found_.give_up_s;
-  return kGiveUpLooks * std::max(model.sensing.period_s, model.run.decision_dt_s());
+  return kGiveUpLooks * model.look_period_s();
 }
 
 void SearchLaw::Act(const ControllerInput<double>& in, double* action) const {

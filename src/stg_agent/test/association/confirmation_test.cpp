@@ -76,7 +76,7 @@ TEST(Confirmation, PassesNoMoreFalseAlarmsThanComputed) {
   const AgentModel s = Model(q);
   // The pair that may differ most gives the upper bound: the looks farthest apart, the worst noise.
   const double fits_m =
-      Initiation(s).Reach(RangeInLook(0, kReach_m), RangeInLook(Confirmation::kLooks, kReach_m));
+      OneTarget(s).Reach(RangeInLook(0, kReach_m), RangeInLook(Confirmation::kLooks, kReach_m));
   const double most = TwoOrMore(Confirmation::kLooks, q * 2.0 * fits_m / kReach_m);
   Confirmation confirmation(s);
   std::mt19937_64 random(5);

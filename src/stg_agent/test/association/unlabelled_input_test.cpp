@@ -218,7 +218,7 @@ TEST(Initiation, FalseAlarmsStartNoMoreEstimatesThanComputed) {
   Initiation initiation(s);
   double fits_m[Initiation::kLooks + 1] = {};
   for (int gap = 1; gap <= Initiation::kLooks; ++gap) {
-    fits_m[gap] = initiation.Reach(RangeAt(0, reach_m), RangeAt(look(gap), reach_m));
+    fits_m[gap] = OneTarget(s).Reach(RangeAt(0, reach_m), RangeAt(look(gap), reach_m));
   }
   const double most = Complete(q, reach_m, fits_m, 1, Initiation::kLooks - 1, 1);
   std::mt19937_64 random(17);

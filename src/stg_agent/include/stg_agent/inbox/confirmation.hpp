@@ -1,6 +1,7 @@
 #pragma once
 
-#include "stg_agent/inbox/initiation.hpp"
+#include "auv_common/numbers/short_list.hpp"
+#include "stg_agent/inbox/one_target.hpp"
 
 namespace stg::agent {
 
@@ -25,7 +26,7 @@ class Confirmation {
  private:
   bool needed_;
   TimeNs longest_;  // from the first of the N looks to the present one
-  Initiation pair_;
+  OneTarget pair_;
   ShortList<dynamics::Detection, kLooks> recent_;  // newest first
 };
 

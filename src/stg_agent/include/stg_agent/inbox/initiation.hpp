@@ -1,17 +1,14 @@
 #pragma once
 
 #include "auv_common/numbers/short_list.hpp"
-#include "auv_dynamics/measurements.hpp"
-#include "stg_agent/agent_config.hpp"
+#include "stg_agent/inbox/one_target.hpp"
 
 namespace stg::agent {
 
 /// Decides when unlabelled detections that fit no estimate are a target without an estimate: when
 /// M of N looks have one that the same target may cause (M of N logic; Bar-Shalom and Li 1995).
-/// A false alarm seldom fits the one before it, because a target is slow.
-///
-/// Two ranges fit if they differ by no more than the ways of the target and of the observer in
-/// between, and the 99 % bound of their noise; two points likewise. Bearings alone start nothing.
+/// A false alarm seldom fits the one before it, because a target is slow. Bearings alone
+/// start nothing.
 class Initiation {
  public:
   static constexpr int kNeeded = 4;  ///< M
@@ -27,15 +24,10 @@ class Initiation {
   /// Detections that one target may have caused, oldest first.
   const Chain& chain() const { return chain_; }
 
-  /// Largest difference of two detections of one target: of their ranges or points [m].
-  double Reach(const dynamics::Detection& a, const dynamics::Detection& b) const;
-  /// True if one target may have caused both. Not for bearings.
-  bool Fits(const dynamics::Detection& a, const dynamics::Detection& b) const;
-
  private:
   bool MayStart(const dynamics::Detection& d) const;
 
-  double max_speed_mps_;
+  OneTarget pair_;
   TimeNs longest_;  // between the first and the last look
   Chain chain_;
 };
