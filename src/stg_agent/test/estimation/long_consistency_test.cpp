@@ -82,6 +82,21 @@ TEST(LongConsistency, WaterThatNobodyKnows) {
   EXPECT_LT(flown.own_m, 20.0);
 }
 
+TEST(LongConsistency, LargeSwarmInWaterThatNobodyKnows) {
+  FleetOptions o = LongFlight();
+  o.observers = 12;
+  o.seconds = 2700.0;
+  o.interval_s = 36.0;
+  AgentScenario s = FleetScenario(o);
+  s.world.navigation.dvl_altitude_m = 10.0;
+  s.world.current.velocity_mps = {0.08, 0.05, 0.0};
+  s.agent.track.observers = ObserverErrors::kRates;
+  const Long flown = Judge(o, s, "twelve, no bottom, a current");
+  EXPECT_LT(flown.nees, Upper());
+  // The error of each observer is remembered from packet to packet.
+  EXPECT_LT(flown.own_m, 8.0);
+}
+
 TEST(LongConsistency, FourInAPileAreOneObserver) {
   FleetOptions o = LongFlight();
   o.pile = true;

@@ -26,24 +26,56 @@ double* Allocate(std::size_t numbers) {
 
 }  // namespace
 
-GaussianMixture::GaussianMixture(int states, int capacity)
-    : states_(states),
-      stride_((states + kRegister - 1) / kRegister * kRegister),
-      capacity_(capacity),
-      step_(static_cast<std::size_t>(kRegister + stride_ + stride_ * stride_)),
-      data_(Allocate(step_ * static_cast<std::size_t>(capacity))) {}
+GaussianMixture::GaussianMixture(int least, int most, int capacity)
+    : least_(least), most_(most), capacity_(capacity) {
+  assert(least <= most);
+  Resize(most);
+  data_.reset(Allocate(step_ * static_cast<std::size_t>(capacity)));
+  Resize(least);
+}
 
 GaussianMixture::GaussianMixture(const GaussianMixture& other)
-    : GaussianMixture(other.states_, other.capacity_) {
+    : GaussianMixture(other.least_, other.most_, other.capacity_) {
   *this = other;
 }
 
 GaussianMixture& GaussianMixture::operator=(const GaussianMixture& other) {
-  assert(step_ == other.step_ && other.size_ <= capacity_);
+  assert(most_ == other.most_ && other.size_ <= capacity_);
   if (this == &other) return *this;
   size_ = other.size_;
+  Resize(other.states_);
   std::copy_n(other.data_.get(), static_cast<std::size_t>(size_) * step_, data_.get());
   return *this;
+}
+
+void GaussianMixture::Resize(int states) {
+  states_ = states;
+  stride_ = (states + kRegister - 1) / kRegister * kRegister;
+  step_ = static_cast<std::size_t>(kRegister + stride_ + stride_ * stride_);
+}
+
+void GaussianMixture::Cover(int states) {
+  assert(states <= most_);
+  if (states <= states_) return;
+  const int before = stride_;
+  const std::size_t step = step_;
+  Resize(states);
+  if (stride_ == before) return;
+  const auto widen = [&](const double* from, double* to) {
+    std::copy_backward(from, from + before, to + before);
+    std::fill(to + before, to + stride_, 0.0);
+  };
+  // Every number moves back, so the last one moves first.
+  for (int k = size_ - 1; k >= 0; --k) {
+    const double* from = data_.get() + static_cast<std::size_t>(k) * step;
+    const Gaussian to = at(k);
+    std::fill(to.P + before * stride_, to.P + stride_ * stride_, 0.0);
+    for (int r = before - 1; r >= 0; --r) {
+      widen(from + kRegister + before + r * before, to.P + r * stride_);
+    }
+    widen(from + kRegister, to.x);
+    *to.weight = *from;
+  }
 }
 
 Gaussian GaussianMixture::Add() {

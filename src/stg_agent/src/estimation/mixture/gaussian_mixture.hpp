@@ -23,12 +23,14 @@ inline constexpr int kRegister = 4;
 inline constexpr std::align_val_t kAlignment{kRegister * sizeof(double)};
 
 /// Weighted normal distributions over one state. The capacity is fixed, and nothing is allocated
-/// after construction. The cost of a copy is proportional to the number of components.
+/// after construction. The state grows as far as it is used: the cost of a copy is proportional to
+/// the number of components, and to the square of the size of the state.
 class GaussianMixture {
  public:
-  /// @param states    size of the state
+  /// @param least     size of the state of an empty mixture
+  /// @param most      largest size of the state
   /// @param capacity  most components
-  GaussianMixture(int states, int capacity);
+  GaussianMixture(int least, int most, int capacity);
   GaussianMixture(const GaussianMixture& other);
   GaussianMixture& operator=(const GaussianMixture& other);
 
@@ -42,8 +44,13 @@ class GaussianMixture {
     double* p = data_.get() + static_cast<std::size_t>(k) * step_;
     return {p, p + kRegister, p + kRegister + stride_};
   }
-  /// Forgets all components.
-  void Clear() { size_ = 0; }
+  /// Forgets all components. The state is as small as at first.
+  void Clear() {
+    size_ = 0;
+    Resize(least_);
+  }
+  /// Makes the state at least this large. The new states are zero.
+  void Cover(int states);
   /// Adds a component with weight one and zeros. The mixture must not be full.
   Gaussian Add();
   /// Adds a copy of component k. The mixture must not be full.
@@ -64,6 +71,7 @@ class GaussianMixture {
   void Reduce(int most);
 
  private:
+  void Resize(int states);
   void Merge(int into, int from);
   void MergeNearest();
   double Separation(int a, int b) const;
@@ -72,7 +80,8 @@ class GaussianMixture {
     void operator()(double* p) const { ::operator delete(p, kAlignment); }
   };
 
-  int states_, stride_, capacity_;
+  int least_, most_, capacity_;
+  int states_, stride_;
   std::size_t step_;  // numbers per component
   int size_ = 0;
   // Memory is only written when it is needed. Most mixtures have one component most of the time,

@@ -49,7 +49,7 @@ class MeasurementFilter : public TargetFilter {
         spacing_(static_cast<TimeNs>(s.track.share_spacing_s * 1e9)),
         oldest_shared_(std::min(memory_, 127 * s.run.decision_period())),
         now_(model_.layout(), DriftModelOf(s), self, kMostComponents),
-        view_(kTargetStates + model_.layout().per_observer, kKeptComponents) {
+        view_(model_.layout().own_states(), model_.layout().own_states(), kKeptComponents) {
     snapshots_.reserve(kSnapshots);
     for (int k = 0; k < kSnapshots; ++k) {
       snapshots_.emplace_back(model_.layout(), DriftModelOf(s), self, kKeptComponents);
@@ -88,6 +88,7 @@ class MeasurementFilter : public TargetFilter {
   void Start(const Vec3<double>& p_WT, double std_m, TimeNs stamp) override {
     if (comparison_) comparison_->Forget();
     now_.mixture.Clear();
+    now_.observers.Clear();
     model_.Datum(p_WT, std_m, now_.mixture.Add(), now_.mixture.stride());
     now_.stamp = now_.information = stamp;
     now_.covers = stamp - 1;

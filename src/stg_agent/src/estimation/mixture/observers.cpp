@@ -132,6 +132,7 @@ int Observers::Admit(int id, TimeNs stamp, double position_std_m, double heading
   Block& block = blocks_[static_cast<std::size_t>(slot)];
   const int first = layout_.block(slot);
   const bool is_new = block.id != id;
+  mixture->Cover(first + layout_.per_observer);
   if (is_new) {
     for (int i = 0; i < layout_.per_observer; ++i) Shrink(first + i, 0.0, mixture);
     block = Block();

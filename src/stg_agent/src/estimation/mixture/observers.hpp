@@ -43,7 +43,6 @@ class Observers {
             GaussianMixture* mixture);
 
  private:
-  static constexpr int kMost = 8;
   struct Block {
     int id = -1;  ///< -1: none
     TimeNs used = 0;
@@ -59,7 +58,7 @@ class Observers {
   DriftModel drift_;
   int self_;
   bool adrift_ = false;  // the own log has no bottom
-  std::array<Block, kMost> blocks_{};
+  std::array<Block, kMostObservers> blocks_{};
 };
 
 }  // namespace stg::agent

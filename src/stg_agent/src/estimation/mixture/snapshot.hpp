@@ -14,7 +14,7 @@ struct Sighting {
 /// State of the filter after all sightings up to a time.
 struct Snapshot {
   Snapshot(const StateLayout& layout, const DriftModel& drift, int self, int capacity)
-      : mixture(layout.states(), capacity), observers(layout, drift, self) {}
+      : mixture(layout.own_states(), layout.states(), capacity), observers(layout, drift, self) {}
 
   TimeNs covers = -1;  ///< contains the sightings up to this time
   TimeNs stamp = 0;    ///< time of the state

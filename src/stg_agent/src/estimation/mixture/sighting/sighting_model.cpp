@@ -34,7 +34,7 @@ SightingModel::SightingModel(const AgentModel& s) {
     layout_.rates = s.track.observers == ObserverErrors::kRates;
     layout_.located = s.track.observers == ObserverErrors::kLocated;
     layout_.per_observer = layout_.rate() + (layout_.rates ? 2 : 0);
-    layout_.observers = std::min(s.run.agents, kMostObservers);
+    layout_.observers = std::min(s.run.agents, layout_.rates ? kMostObservers : kSteadyObservers);
   }
   observer_depth_variance_ =
       navigation->perfect() ? 0.0 : s.navigation.depth_std_m * s.navigation.depth_std_m;

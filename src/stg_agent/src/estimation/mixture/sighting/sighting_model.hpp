@@ -7,8 +7,9 @@
 namespace stg::agent {
 
 /// Number of observers with separate errors. In larger swarms, they are the last ones with a
-/// packet.
-inline constexpr int kMostObservers = 8;
+/// packet. Errors that drift are large when an observer comes back, so there are more of them.
+inline constexpr int kSteadyObservers = 8;
+inline constexpr int kMostObservers = 20;
 inline constexpr int kMostStates = kTargetStates + 5 * kMostObservers;
 inline constexpr int kMostStride = (kMostStates + 3) / 4 * 4;
 
@@ -29,7 +30,10 @@ struct StateLayout {
   /// Place of the first rate within a block.
   int rate() const { return heading ? 3 : 2; }
 
+  /// Size of the state with all observers.
   int states() const { return kTargetStates + per_observer * observers; }
+  /// Size of the state with the AUV itself as the only observer.
+  int own_states() const { return kTargetStates + per_observer; }
   int block(int slot) const { return kTargetStates + per_observer * slot; }
 };
 
