@@ -14,6 +14,8 @@ from stg_study import tables, tables_cost
 from stg_study.data import Paper
 from stg_study.figures_curves import comparable
 
+STUDIES = ("acoustic", "baselines", "equal_terms", "full", "paper")
+
 
 class Job:
     """What the estimate needs to know of a job."""
@@ -162,7 +164,7 @@ class PolicyFiles(unittest.TestCase):
 class Figures(unittest.TestCase):
     def test_a_method_has_one_colour_in_all_studies_and_none_of_another(self):
         tables_of = [figure_style.colours(study.load_study(study.find_study(name)))
-                     for name in ("paper", "acoustic", "equal_terms", "full")]
+                     for name in STUDIES]
         known = {}
         for table in tables_of:
             for name, colour in table.items():
@@ -213,7 +215,7 @@ class Studies(unittest.TestCase):
     def test_shipped_studies_load_and_survive_a_round_trip(self):
         folder = study.shipped_studies()
         names = sorted(name for name in os.listdir(folder) if name.endswith(".yaml"))
-        self.assertEqual(names, ["acoustic.yaml", "equal_terms.yaml", "full.yaml", "paper.yaml"])
+        self.assertEqual(names, [f"{name}.yaml" for name in STUDIES])
         for name in names:
             loaded = study.load_study(os.path.join(folder, name))
             self.assertEqual(loaded.name, name[:-5])
@@ -229,7 +231,7 @@ class Studies(unittest.TestCase):
 
     def test_shipped_studies_name_shipped_scenarios_and_variants(self):
         scenarios = os.path.join(PACKAGE, "..", "stg_bringup", "scenarios")
-        for name in ("paper", "acoustic", "equal_terms", "full"):
+        for name in STUDIES:
             loaded = study.load_study(study.find_study(name))
             for scenario in loaded.scenarios:
                 path = os.path.join(scenarios, scenario.name + ".yaml")
@@ -245,6 +247,15 @@ class Studies(unittest.TestCase):
             self.assertEqual(method.variant, "stg" if name == "STG-MAPPO" else "tau6")
             algorithm = "mappo" if name == "STG-MAPPO" else name.lower()
             self.assertEqual(method.train.get("algorithm", "mappo"), algorithm)
+
+    def test_the_longer_baselines_differ_in_their_steps_only(self):
+        paper = {method.name: method for method in study.load_study(study.find_study("paper")).methods}
+        longer = study.load_study(study.find_study("baselines"))
+        self.assertEqual(longer.steps, 2016000)
+        for method in longer.methods:
+            other = paper[method.name]
+            self.assertEqual((method.variant, method.paper, method.train),
+                             (other.variant, other.paper, other.train))  # fmt: skip
 
     def test_seeds_of_a_scenario_go_before_the_study_s(self):
         data = dict(yaml.safe_load(open(study.find_study("paper"), encoding="utf-8")))
