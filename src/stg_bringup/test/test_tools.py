@@ -29,9 +29,9 @@ PYTHON = str(pathlib.Path(stg_common.__file__).resolve().parents[1])
 
 
 def run(folder, name, *arguments):
-    """Runs a program of scripts/ in a folder; returns the finished process. Only fig6 gets the workspace."""
+    """Runs a program of scripts/ in a folder; returns the finished process. fig6 and joins get the workspace."""
     environment = {"PATH": "/usr/bin:/bin", "HOME": folder, "LC_ALL": "C", "PYTHONPATH": PYTHON}
-    if name.endswith("fig6"):
+    if name in ("results/fig6", "results/joins"):
         environment = dict(os.environ)
     program = [str(SCRIPTS / name)] if os.access(SCRIPTS / name, os.X_OK) else [
         sys.executable, str(SCRIPTS / name)]  # fmt: skip
@@ -75,6 +75,13 @@ class Tools(unittest.TestCase):
         self.check_refused("--seed must not be negative", "results/fig6", "--seed", "-1")
         self.check_refused("no folder none", "results/fig6", "--out", "none/fig6")
         self.check_refused("at most 8", "results/fig6", "--cases", *["fig6_4"] * 9)
+
+    def test_judge_of_joins_refuses_what_it_cannot_fly(self):
+        self.check_refused("--agents must be at least 5", "results/joins", "encircle", "--agents", "4")
+        self.check_refused("--episodes must be positive", "results/joins", "encircle", "--episodes", "0")
+        self.check_refused("^joins: .*'nobody'", "results/joins", "nobody", "--episodes", "1")
+        self.check_refused("only in open water", "results/joins", "pursuit", "--scenario", "medium",
+                           "--agents", "5")  # fmt: skip
 
     @unittest.skipUnless(os.path.exists("/usr/share/i18n/locales/de_DE"), "no sources of locales")
     def test_benchmark_of_the_graph_prints_json_where_numbers_have_commas(self):
