@@ -4,8 +4,27 @@
 
 #include "stg_agent/entities/pool_network.hpp"
 
-/// Products of one row for the networks over entities; they allocate nothing.
+/// What the networks over entities share: places of parameters, and products of one row, which
+/// allocate nothing.
 namespace stg::agent {
+
+/// Gives matrices and vectors consecutive places in a flat array.
+class BlockPlaces {
+ public:
+  PoolBlock Block(int rows, int cols) {
+    const PoolBlock block{size_, rows, cols};
+    size_ += block.size();
+    return block;
+  }
+  PoolBlocks::Layer Layer(int outputs, int inputs) {
+    const PoolBlock weight = Block(outputs, inputs);
+    return {weight, Block(outputs, 1)};
+  }
+  std::size_t size() const { return size_; }
+
+ private:
+  std::size_t size_ = 0;
+};
 
 using RowMajorMatrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 

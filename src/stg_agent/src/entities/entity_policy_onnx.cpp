@@ -1,5 +1,4 @@
 #include <onnx/onnx_pb.h>
-#include <sys/stat.h>
 
 #include <cmath>
 #include <cstdio>
@@ -9,6 +8,7 @@
 #include <map>
 #include <utility>
 
+#include "../policy/policy_onnx.hpp"
 #include "auv_common/durable_file.hpp"
 #include "auv_common/error.hpp"
 #include "auv_common/names.hpp"
@@ -85,26 +85,6 @@ onnx::ModelProto ModelOf(const EntityPolicy::Parameters& p) {
   put("stg.log_std", log_std);
   for (const auto& [name, value] : m.metrics) put(kEntityMetric + name, value);
   put("stg.checksum", "3:" + ChecksumOf(BytesOf(model)));
-  return model;
-}
-
-onnx::ModelProto ParseModel(const std::string& path) {
-  struct stat info {};
-  if (::stat(path.c_str(), &info) != 0) throw UserError(path + ": no such policy file");
-  if (!S_ISREG(info.st_mode)) throw UserError(path + ": not a policy: not a regular file");
-  if (info.st_size > Policy::kMaxFileBytes) {
-    throw UserError(path + ": not a policy: larger than " + std::to_string(Policy::kMaxFileBytes) +
-                    " bytes");
-  }
-  std::string bytes(static_cast<std::size_t>(info.st_size), '\0');
-  std::ifstream in(path, std::ios::binary);
-  if (!in || !in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()))) {
-    throw UserError(path + ": cannot read the policy");
-  }
-  onnx::ModelProto model;
-  if (bytes.empty() || !model.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) {
-    throw UserError(path + ": not a policy: not an ONNX file, or a truncated one");
-  }
   return model;
 }
 
@@ -205,7 +185,7 @@ class EntityReader {
 
 bool EntityPolicy::IsOne(const std::string& path) {
   try {
-    const onnx::ModelProto model = ParseModel(path);
+    const onnx::ModelProto model = ReadModel(path);
     for (const auto& entry : model.metadata_props()) {
       if (entry.key() == "stg.observation_layout") return entry.value() == kEntityLayout;
     }
@@ -216,7 +196,7 @@ bool EntityPolicy::IsOne(const std::string& path) {
 }
 
 EntityPolicy EntityPolicy::LoadOnnx(const std::string& path) {
-  const onnx::ModelProto model = ParseModel(path);
+  const onnx::ModelProto model = ReadModel(path);
   try {
     return EntityPolicy(EntityReader(path, model).Read());
   } catch (const UserError& error) {

@@ -114,40 +114,33 @@ void PassMessages(const float* p, const GraphBlocks& b, const GraphRows& in,
 }  // namespace
 
 GraphBlocks::GraphBlocks(const GraphSpec& spec) {
-  const auto block = [this](int rows, int cols) {
-    const PoolBlock b{size, rows, cols};
-    size += b.size();
-    return b;
-  };
-  const auto layer = [&block](int outputs, int inputs) {
-    const PoolBlock weight = block(outputs, inputs);
-    return Layer{weight, block(outputs, 1)};
-  };
+  BlockPlaces places;
   const int width = spec.width;
   const std::array<int, 3> numbers = {spec.targets, spec.neighbours, spec.obstacles};
   for (std::size_t s = 0; s < sets.size(); ++s) {
-    sets[s].first = layer(width, numbers[s]);
-    sets[s].second = layer(width, width);
-    sets[s].nobody = block(width, 1);
+    sets[s].first = places.Layer(width, numbers[s]);
+    sets[s].second = places.Layer(width, width);
+    sets[s].nobody = places.Block(width, 1);
   }
-  self = layer(spec.hidden, spec.self);
-  edge_neighbour = block(width, width);
-  edge_row = block(width, spec.edges);
-  edge_nobody = block(width, 1);
-  edge_target = layer(width, width);
-  update = layer(width, 3 * width);
+  self = places.Layer(spec.hidden, spec.self);
+  edge_neighbour = places.Block(width, width);
+  edge_row = places.Block(width, spec.edges);
+  edge_nobody = places.Block(width, 1);
+  edge_target = places.Layer(width, width);
+  update = places.Layer(width, 3 * width);
   for (Attention& a : attention) {
-    a.query = block(width, spec.hidden);
-    a.key = block(width, width);
-    a.value = block(width, width);
+    a.query = places.Block(width, spec.hidden);
+    a.key = places.Block(width, width);
+    a.value = places.Block(width, width);
   }
-  prior = block(spec.heads, 1);
-  pointer = block(width, spec.hidden);
-  follow = block(1, 1);
-  trunk1 = layer(spec.hidden, spec.joined());
-  trunk2 = layer(spec.hidden, spec.hidden);
-  head = layer(spec.outputs, spec.hidden);
-  head_row = block(spec.outputs, width);
+  prior = places.Block(spec.heads, 1);
+  pointer = places.Block(width, spec.hidden);
+  follow = places.Block(1, 1);
+  trunk1 = places.Layer(spec.hidden, spec.joined());
+  trunk2 = places.Layer(spec.hidden, spec.hidden);
+  head = places.Layer(spec.outputs, spec.hidden);
+  head_row = places.Block(spec.outputs, width);
+  size = places.size();
 }
 
 std::vector<PoolBlock> GraphBlocks::all() const {

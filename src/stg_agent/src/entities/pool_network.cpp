@@ -18,26 +18,19 @@ void RequirePool(bool ok, const std::string& what) {
 }  // namespace
 
 PoolBlocks::PoolBlocks(const PoolSpec& spec) {
-  const auto block = [this](int rows, int cols) {
-    const PoolBlock b{size, rows, cols};
-    size += b.size();
-    return b;
-  };
-  const auto layer = [&block](int outputs, int inputs) {
-    const PoolBlock weight = block(outputs, inputs);
-    return Layer{weight, block(outputs, 1)};
-  };
+  BlockPlaces places;
   for (const int n : spec.sets) {
     Set set;
-    set.first = layer(spec.width, n);
-    set.second = layer(spec.width, spec.width);
-    set.nobody = block(spec.width, 1);
+    set.first = places.Layer(spec.width, n);
+    set.second = places.Layer(spec.width, spec.width);
+    set.nobody = places.Block(spec.width, 1);
     sets.push_back(set);
   }
-  self = layer(spec.hidden, spec.self);
-  trunk1 = layer(spec.hidden, spec.joined());
-  trunk2 = layer(spec.hidden, spec.hidden);
-  head = layer(spec.outputs, spec.hidden);
+  self = places.Layer(spec.hidden, spec.self);
+  trunk1 = places.Layer(spec.hidden, spec.joined());
+  trunk2 = places.Layer(spec.hidden, spec.hidden);
+  head = places.Layer(spec.outputs, spec.hidden);
+  size = places.size();
 }
 
 std::vector<PoolBlock> PoolBlocks::all() const {

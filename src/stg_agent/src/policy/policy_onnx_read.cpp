@@ -294,12 +294,12 @@ class Reader {
 
 }  // namespace
 
-Policy Policy::LoadOnnx(const std::string& path) {
+onnx::ModelProto ReadModel(const std::string& path) {
   struct stat info {};
   if (::stat(path.c_str(), &info) != 0) throw UserError(path + ": no such policy file");
   if (!S_ISREG(info.st_mode)) throw UserError(path + ": not a policy: not a regular file");
-  if (info.st_size > kMaxFileBytes) {
-    throw UserError(path + ": not a policy: larger than " + std::to_string(kMaxFileBytes) +
+  if (info.st_size > Policy::kMaxFileBytes) {
+    throw UserError(path + ": not a policy: larger than " + std::to_string(Policy::kMaxFileBytes) +
                     " bytes");
   }
   std::string bytes(static_cast<std::size_t>(info.st_size), '\0');
@@ -311,6 +311,11 @@ Policy Policy::LoadOnnx(const std::string& path) {
   if (bytes.empty() || !model.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) {
     throw UserError(path + ": not a policy: not an ONNX file, or a truncated one");
   }
+  return model;
+}
+
+Policy Policy::LoadOnnx(const std::string& path) {
+  const onnx::ModelProto model = ReadModel(path);
   try {
     return Policy(Reader(path, model).Read());
   } catch (const UserError& error) {

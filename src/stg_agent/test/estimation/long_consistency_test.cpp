@@ -54,6 +54,15 @@ FleetOptions LongFlight() {
   return o;
 }
 
+/// The log does not reach the bottom, and no AUV knows the current.
+AgentScenario UnknownWater(const FleetOptions& o) {
+  AgentScenario s = FleetScenario(o);
+  s.world.navigation.dvl_altitude_m = 10.0;
+  s.world.current.velocity_mps = {0.08, 0.05, 0.0};
+  s.agent.track.observers = ObserverErrors::kRates;
+  return s;
+}
+
 TEST(LongConsistency, NavigationThatDriftsWithTheWayRun) {
   const FleetOptions o = LongFlight();
   EXPECT_LT(Judge(o, FleetScenario(o), "bottom lock").nees, Upper());
@@ -72,10 +81,7 @@ TEST(LongConsistency, CompassesThatAreWrongByDegrees) {
 
 TEST(LongConsistency, WaterThatNobodyKnows) {
   const FleetOptions o = LongFlight();
-  AgentScenario s = FleetScenario(o);
-  s.world.navigation.dvl_altitude_m = 10.0;
-  s.world.current.velocity_mps = {0.08, 0.05, 0.0};
-  s.agent.track.observers = ObserverErrors::kRates;
+  const AgentScenario s = UnknownWater(o);
   const Long flown = Judge(o, s, "no bottom, a current");
   // All flights have the same current. Its own share of NEES is 0.89, and not the expected 2.
   EXPECT_LT(flown.nees, Upper());
@@ -87,10 +93,7 @@ TEST(LongConsistency, LargeSwarmInWaterThatNobodyKnows) {
   o.observers = 12;
   o.seconds = 2700.0;
   o.interval_s = 36.0;
-  AgentScenario s = FleetScenario(o);
-  s.world.navigation.dvl_altitude_m = 10.0;
-  s.world.current.velocity_mps = {0.08, 0.05, 0.0};
-  s.agent.track.observers = ObserverErrors::kRates;
+  const AgentScenario s = UnknownWater(o);
   const Long flown = Judge(o, s, "twelve, no bottom, a current");
   EXPECT_LT(flown.nees, Upper());
   // The error of each observer is remembered from packet to packet.
@@ -106,10 +109,7 @@ TEST(LongConsistency, FourInAPileAreOneObserver) {
 TEST(LongConsistency, APileInWaterThatNobodyKnows) {
   FleetOptions o = LongFlight();
   o.pile = true;
-  AgentScenario s = FleetScenario(o);
-  s.world.navigation.dvl_altitude_m = 10.0;
-  s.world.current.velocity_mps = {0.08, 0.05, 0.0};
-  s.agent.track.observers = ObserverErrors::kRates;
+  const AgentScenario s = UnknownWater(o);
   EXPECT_LT(Judge(o, s, "a pile, no bottom, a current").nees, Upper());
 }
 

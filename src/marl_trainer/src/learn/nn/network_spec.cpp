@@ -36,30 +36,35 @@ double NetworkSpec::training_products() const {
   return 3.0 * forward_products() - 1.0 * layer_inputs(0) * layer_outputs(0);
 }
 
+void WriteOrthogonal(int rows, int cols, double gain, Random* random, float* out) {
+  const int large = std::max(rows, cols), small = std::min(rows, cols);
+  // Q of a tall Gaussian matrix. The signs of R's diagonal make its distribution uniform.
+  Eigen::MatrixXd gaussian(large, small);
+  for (int i = 0; i < large; ++i) {
+    for (int j = 0; j < small; ++j) gaussian(i, j) = random->Normal();
+  }
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(gaussian);
+  Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(large, small);
+  for (int j = 0; j < small; ++j) {
+    if (qr.matrixQR()(j, j) < 0.0) q.col(j) *= -1.0;
+  }
+  for (int i = 0; i < rows; ++i) {
+    for (int j = 0; j < cols; ++j) {
+      *out++ = static_cast<float>(gain * (rows >= cols ? q(i, j) : q(j, i)));
+    }
+  }
+}
+
 void InitialiseOrthogonally(const NetworkSpec& spec, std::uint64_t seed, std::uint32_t network,
                             float* parameters) {
   const double hidden_gain = spec.activation == HiddenActivation::kRelu ? std::sqrt(2.0) : 1.0;
   for (int l = 0; l < spec.layers(); ++l) {
     Random random(seed, Stream::kInit, network, static_cast<std::uint32_t>(l), 0);
     const int rows = spec.layer_outputs(l), cols = spec.layer_inputs(l);
-    const int large = std::max(rows, cols), small = std::min(rows, cols);
-    // Q of a tall Gaussian matrix. The signs of R's diagonal make its distribution uniform.
-    Eigen::MatrixXd gaussian(large, small);
-    for (int i = 0; i < large; ++i) {
-      for (int j = 0; j < small; ++j) gaussian(i, j) = random.Normal();
-    }
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(gaussian);
-    Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(large, small);
-    for (int j = 0; j < small; ++j) {
-      if (qr.matrixQR()(j, j) < 0.0) q.col(j) *= -1.0;
-    }
     const double gain =
         l + 1 == spec.layers() ? static_cast<double>(spec.output_gain) : hidden_gain;
-    for (int i = 0; i < rows; ++i) {
-      for (int j = 0; j < cols; ++j) {
-        *parameters++ = static_cast<float>(gain * (rows >= cols ? q(i, j) : q(j, i)));
-      }
-    }
+    WriteOrthogonal(rows, cols, gain, &random, parameters);
+    parameters += static_cast<std::ptrdiff_t>(rows) * cols;
     parameters = std::fill_n(parameters, rows, 0.0F);
   }
 }

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "auv_common/numbers/random.hpp"
+
 namespace stg::learn {
 
 /// Nonlinearity of the hidden layers.
@@ -37,6 +39,10 @@ struct NetworkSpec {
   double forward_products() const;
   double training_products() const;
 };
+
+/// Writes a random matrix with orthogonal rows or columns of this length (Saxe et al. 2014).
+/// @param out [rows, cols], row-major, written.
+void WriteOrthogonal(int rows, int cols, double gain, Random* random, float* out);
 
 /// Writes orthogonal weights with gain sqrt(2) (ReLU) or 1 (tanh) in the hidden layers and
 /// output_gain in the last layer, and zero biases.

@@ -1,11 +1,11 @@
 #include "packed_layers.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
 #include "auv_common/numbers/random.hpp"
 #include "marl_trainer/learn/nn/blas.hpp"
+#include "marl_trainer/learn/nn/network_spec.hpp"
 
 namespace stg::learn {
 
@@ -68,26 +68,11 @@ void Initialise(const std::vector<agent::PoolBlock>& blocks,
     ++index;
     if (block.cols <= 1) continue;
     Random random(seed, Stream::kInit, network, index, 0);
-    const int large = std::max(block.rows, block.cols), small = std::min(block.rows, block.cols);
-    Eigen::MatrixXd gaussian(large, small);
-    for (int i = 0; i < large; ++i) {
-      for (int j = 0; j < small; ++j) gaussian(i, j) = random.Normal();
-    }
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(gaussian);
-    Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(large, small);
-    for (int j = 0; j < small; ++j) {
-      if (qr.matrixQR()(j, j) < 0.0) q.col(j) *= -1.0;
-    }
     const bool output =
         std::any_of(outputs.begin(), outputs.end(),
                     [&block](const agent::PoolBlock& o) { return o.offset == block.offset; });
     const double gain = output ? output_gain : std::sqrt(2.0);
-    float* out = parameters + block.offset;
-    for (int i = 0; i < block.rows; ++i) {
-      for (int j = 0; j < block.cols; ++j) {
-        *out++ = static_cast<float>(gain * (block.rows >= block.cols ? q(i, j) : q(j, i)));
-      }
-    }
+    WriteOrthogonal(block.rows, block.cols, gain, &random, parameters + block.offset);
   }
 }
 
