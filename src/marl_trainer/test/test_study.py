@@ -63,6 +63,7 @@ class Cells(unittest.TestCase):
         self.assertEqual(tables.cell((254.806, 11.66), 2), "254.81 ± 11.66")
         self.assertEqual(tables.cell((0.0131, None), 3), "0.013")
         self.assertEqual(tables.cell(None, 3), "–")
+        self.assertEqual(tables.cell((1e9, 0.0), 1), "–")
         self.assertEqual(tables.cell((-0.0001, 0.0), 3), "0.000 ± 0.000")
         self.assertEqual(tables.cell((1019.2, 46.6), 2, scale=0.25), "254.80 ± 11.65")
 

@@ -24,6 +24,9 @@ bool Inside(const Vec3<double>& p, double half_extent) {
 
 /// Smallest distance of vehicles and targets from the bottom and obstacles at the start [m].
 constexpr double kClearOfAll_m = 5.0;
+/// Smallest distance of vehicles from obstacles at the start [m]. A torpedo that starts towards an
+/// obstacle needs its turning circle of 25 m to pass it.
+constexpr double kRoomToTurn_m = 30.0;
 
 Vec3<double> LevelDirection(Random* random) {
   const double angle = random->Uniform(0.0, 2.0 * kPi);
@@ -100,15 +103,16 @@ void DrawSeaStart(const ResetConfig& config, const SeaConfig& sea, const Seascap
     p.z = -draw->Uniform(depth_m.lo, depth_m.hi);
     return p;
   };
-  const auto clear = [&scape](const Vec3<double>& p) {
-    return scape.Altitude(p) > kClearOfAll_m && scape.Clearance(p) > kClearOfAll_m;
+  const auto clear_of = [&scape](const Vec3<double>& p, double obstacles_m) {
+    return scape.Altitude(p) > kClearOfAll_m && scape.Clearance(p) > obstacles_m;
   };
+  const auto clear = [&](const Vec3<double>& p) { return clear_of(p, kRoomToTurn_m); };
   for (auto& target : start->targets) {
     bool placed = false;
     for (int attempt = 0; attempt < 1000 && !placed; ++attempt) {
       const double radius = random.Uniform(r.target_radius_m.lo, r.target_radius_m.hi);
       target.p_WT = at_depth(LevelDirection(&random) * radius, &random, sea.target_depth_m);
-      placed = clear(target.p_WT);
+      placed = clear_of(target.p_WT, kClearOfAll_m);
     }
     if (!placed) {
       throw UserError(

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "auv_common/config/loader.hpp"
 #include "auv_common/error.hpp"
 #include "auv_common/numbers/random.hpp"
@@ -71,6 +73,22 @@ TEST(Obstacles, HoldAVehicleAtTheirSurfaceAndCountItOnceUntilItIsOff) {
   EXPECT_EQ(Lane(world.sea().touching(0), 0), 0.0);
   world.Reset(0, 1, 0, ResetStage::kMedium);
   EXPECT_EQ(Lane(world.sea().collisions(0), 0), 0.0);
+}
+
+TEST(Obstacles, LeaveRoomToTurnAtTheStart) {
+  WorldScenario s = Water(4);
+  s.world.sea.spheres = {{0.0, 0.0, -40.0, 60.0}};
+  s.world.sea.cylinders = {{150.0, 0.0, -120.0, 40.0, 120.0}};
+  World world(s);
+  double nearest = 1e9;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    world.Reset(0, seed, 0, ResetStage::kMedium);
+    for (int i = 0; i < 4; ++i) {
+      nearest = std::min(nearest, world.sea().scape().Clearance(Lane(world.vehicle(i).p_WB, 0)));
+    }
+  }
+  EXPECT_GT(nearest, 30.0);
+  EXPECT_LT(nearest, 35.0);
 }
 
 TEST(Obstacles, BlockTheSensorAndNothingElseDoes) {

@@ -41,6 +41,7 @@ CONDITION_LABELS = {
     "combined_stress": "Combined stress",
 }
 NOTHING = "–"
+NONE_THERE = 1e9  # value of a metric if there is nothing to measure: the distance to no obstacle
 TEXT_COLUMNS = {"Algorithm", "Condition", "Flown by", "Method", "Scenario", "Seed IDs", "Variant"}
 TEXT_COLUMNS |= {"Networks", "Best other", "Knows"}
 
@@ -77,7 +78,7 @@ def condition_label(condition):
 
 def cell(value, digits, scale=1.0):
     """`mean ± std`; only the mean if there is no std; a dash if there is no value."""
-    if value is None:
+    if value is None or value[0] >= NONE_THERE:
         return NOTHING
     mean, std = value
     text = f"{mean * scale:.{digits}f}"

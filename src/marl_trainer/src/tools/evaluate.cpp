@@ -202,8 +202,12 @@ int main(int argc, char** argv) {
                 static_cast<unsigned long long>(seed),
                 block == "no" ? "no" : ("the " + block).c_str());
     for (size_t k = 0; k < summary.names.size(); ++k) {
-      std::printf("  %-24s %12.5f +- %.5f\n", summary.names[k].c_str(), summary.mean[k],
-                  summary.std[k]);
+      if (summary.mean[k] >= 1e9) {  // there is nothing to measure, see Metrics
+        std::printf("  %-24s %12s\n", summary.names[k].c_str(), "-");
+      } else {
+        std::printf("  %-24s %12.5f +- %.5f\n", summary.names[k].c_str(), summary.mean[k],
+                    summary.std[k]);
+      }
       json[summary.names[k]] = summary.mean[k];
       json[summary.names[k] + "_std"] = summary.std[k];
     }

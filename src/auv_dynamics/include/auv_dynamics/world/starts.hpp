@@ -24,8 +24,8 @@ void DrawStart(const ResetConfig& config, ResetStage stage, std::uint64_t seed,
                std::uint32_t episode, Start* start);
 
 /// The same in open water: distances and directions are horizontal, depths are uniform in the
-/// ranges of `sea`, and targets move horizontally. All start 5 m or more from the bottom and
-/// obstacles.
+/// ranges of `sea`, and targets move horizontally. All start 5 m or more from the bottom,
+/// targets 5 m and vehicles 30 m or more from obstacles.
 /// With reset.deploy, vehicles may also start in one place or anywhere.
 void DrawSeaStart(const ResetConfig& config, const SeaConfig& sea, const Seascape& scape,
                   ResetStage stage, std::uint64_t seed, std::uint32_t episode, Start* start);
