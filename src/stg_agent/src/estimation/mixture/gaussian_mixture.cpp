@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstring>
 
 namespace stg::agent {
 namespace {
@@ -62,7 +63,7 @@ void GaussianMixture::Cover(int states) {
   Resize(states);
   if (stride_ == before) return;
   const auto widen = [&](const double* from, double* to) {
-    std::copy_backward(from, from + before, to + before);
+    std::memmove(to, from, static_cast<std::size_t>(before) * sizeof(double));
     std::fill(to + before, to + stride_, 0.0);
   };
   // Every number moves back, so the last one moves first.
