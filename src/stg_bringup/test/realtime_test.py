@@ -1,8 +1,9 @@
 #!/usr/bin/python3
-"""On the wall clock, the thread of each node that a wrench waits for has real-time priority."""
+"""On the wall clock: the threads that a wrench waits for have real-time priority; agents are small."""
 
 import os
 import pathlib
+import re
 import unittest
 
 import rospy
@@ -33,6 +34,12 @@ def realtime_threads(node):
             if os.sched_getscheduler(thread) & ~os.SCHED_RESET_ON_FORK == os.SCHED_RR]
 
 
+def resident_kb(node, field="VmRSS"):
+    """Returns the resident memory of a node, or a part of it, e.g. RssFile."""
+    status = pathlib.Path(f"/proc/{rosnode_pid(node)}/status").read_text(encoding="utf-8")
+    return int(re.search(rf"{field}:\s*(\d+)", status).group(1))
+
+
 class Realtime(unittest.TestCase):
     """A run at the pace of the wall clock."""
 
@@ -49,6 +56,11 @@ class Realtime(unittest.TestCase):
         Latest("/auv_0/wrench", WrenchStamped).wait_for_more(5, 30.0)
         for node in ON_THE_WAY:
             self.assertEqual(realtime_threads(node), [], node)
+
+    def test_an_agent_keeps_few_pages_after_its_start(self):
+        Latest("/auv_0/wrench", WrenchStamped).wait_for_more(20, 30.0)
+        for i in range(4):
+            self.assertLess(resident_kb(f"/auv_{i}/agent"), 16 * 1024)
 
     def test_who_only_watches_has_none(self):
         Latest("/auv_0/wrench", WrenchStamped).wait_for_more(5, 30.0)

@@ -12,8 +12,8 @@ inline constexpr std::size_t kNodeMemory = std::size_t{2} << 30;
 /// that roscpp catches and logs; without it, the machine may run out of memory.
 void LimitMemory(std::size_t bytes);
 
-/// Returns free memory to the system. A node needs much more memory while it reads its
-/// configuration than afterwards.
+/// Returns free memory, and pages of programs and libraries that equal their files, to the system.
+/// A node needs much more memory while it reads its configuration than afterwards.
 void ReturnFreeMemory();
 
 }  // namespace stg::nodes
