@@ -266,7 +266,6 @@ void Network::Recycle() { impl_->payloads_.Recycle(); }
 
 NodeMotion Network::Motion(int node, TimeNs t) const { return impl_->Motion(impl_->At(node), t); }
 bool Network::present(int node) const { return impl_->At(node).present; }
-bool Network::transmitting(int node) const { return impl_->At(node).sending != Impl::kNone; }
 double Network::EnergyJ(int node, TimeNs t) const { return impl_->EnergyJ(impl_->At(node), t); }
 double Network::SentS(int node, TimeNs t) const { return Seconds(impl_->Sent(impl_->At(node), t)); }
 double Network::ClockS(int node, TimeNs t) const {

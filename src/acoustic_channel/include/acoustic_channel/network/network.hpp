@@ -83,7 +83,6 @@ class Network {
 
   NodeMotion Motion(int node, TimeNs t) const;
   bool present(int node) const;
-  bool transmitting(int node) const;
   /// Electric energy that a modem has used by t >= now() [J]: transmitting, receiving, idle.
   double EnergyJ(int node, TimeNs t) const;
   /// Time for which a modem has sent by t >= now() [s].

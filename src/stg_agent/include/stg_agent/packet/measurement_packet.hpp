@@ -60,10 +60,7 @@ class MeasurementPacket {
   double range_error_m() const { return 0.5 * range_.resolution; }
   double azimuth_error_rad() const { return 0.5 * azimuth_.resolution; }
   double elevation_error_rad() const { return 0.5 * elevation_.resolution; }
-  double told_range_error_m() const { return 0.5 * told_range_.resolution; }
   double told_fix_error_m() const { return 0.5 * told_error_.resolution; }
-  /// Distance between two ages [ns].
-  TimeNs age_step() const { return age_step_; }
 
  private:
   struct Writer;

@@ -36,7 +36,6 @@ class SearchMap {
   /// Middle of the map and of a cell [m].
   double x(int column) const { return x0_ + (column + 0.5) * cell_m_; }
   double y(int row) const { return y0_ + (row + 0.5) * cell_m_; }
-  double cell_m() const { return cell_m_; }
   double half_m() const { return 0.5 * kSide * cell_m_; }
   /// Probability of a cell; all of them sum up to 1.
   double mass(int row, int column) const {

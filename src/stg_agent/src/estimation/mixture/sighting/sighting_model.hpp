@@ -90,10 +90,6 @@ class SightingModel {
   bool AddMirror(const Vec3<double>& p_WA, const Vec3<double>& p_WB, double weight,
                  GaussianMixture* mixture) const;
 
-  /// Prior moments of the depth [m], [m^2].
-  double depth_mean() const { return depth_mean_; }
-  double depth_variance() const { return depth_variance_; }
-
  private:
   struct Geometry;  // target and observer, for one component
   struct Row;       // of a measurement matrix
