@@ -23,7 +23,7 @@ import xml.etree.ElementTree as ElementTree
 
 from stg_common.program import run_program
 
-TIMEOUT_S = float(os.environ.get("STG_TEST_TIMEOUT_S", "900"))
+TIMEOUT_S = float(os.environ.get("STG_TEST_TIMEOUT_S", "1800"))
 SHOWN_LINES = 80
 
 

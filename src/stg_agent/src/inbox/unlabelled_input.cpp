@@ -116,7 +116,7 @@ void UnlabelledInput::GiveLook(const Input* look, int count, Filters* filters) {
     const int name = look[j].detection.target;
     if (target < 0 && name >= 0 && name < targets && !started[name]) target = name;
     if (target >= 0) {
-      Take(target, look[j], filters);
+      Take(target, look[j], assignment_.rivals(j), filters);
     } else {
       free[static_cast<std::size_t>(left++)] = look[j].detection;
     }
@@ -129,22 +129,18 @@ void UnlabelledInput::GiveLook(const Input* look, int count, Filters* filters) {
   }
 }
 
-void UnlabelledInput::Take(int target, const Input& input, Filters* filters, bool starts) {
+void UnlabelledInput::Take(int target, const Input& input, double rivals, Filters* filters,
+                           bool starts) {
   TargetFilter& filter = *(*filters)[static_cast<std::size_t>(target)];
   Detection d = input.detection;
   d.target = target;
   if (input.source == self_) {
     const bool supported = confirmations_[static_cast<std::size_t>(target)].Take(d);
     if (!supported && !starts) return;
-    filter.Detect(d);
     TimeNs& newest = own_detections_[static_cast<std::size_t>(target)];
     newest = std::max(newest, d.stamp);
-    return;
   }
-  shared_.source = input.source;
-  shared_.sightings.clear();
-  shared_.sightings.push_back(d);
-  filter.Hear(shared_);
+  filter.Assign(d, input.source, rivals);
 }
 
 void UnlabelledInput::StartMissing(const Detection* free, int count, Filters* filters) {
@@ -155,7 +151,7 @@ void UnlabelledInput::StartMissing(const Detection* free, int count, Filters* fi
   });
   if (missing == filters->end()) return;
   const int target = static_cast<int>(missing - filters->begin());
-  for (const Detection& d : initiation_.chain()) Take(target, {d, self_}, filters, true);
+  for (const Detection& d : initiation_.chain()) Take(target, {d, self_}, 0.0, filters, true);
   initiation_.Clear();
 }
 

@@ -6,6 +6,7 @@
 
 #include "auv_common/numbers/assignment.hpp"
 #include "auv_dynamics/measurements.hpp"
+#include "stg_agent/estimation/joint_association.hpp"
 
 /// Which detection is of which target, if detections do not say it (sensing.labelled).
 namespace stg::agent {
@@ -32,6 +33,10 @@ inline bool InGate(const DetectionFit& fit, dynamics::MeasurementKind kind) {
 
 /// Gives the detections of one look to targets (global nearest neighbour): at most one to each
 /// target, with the largest sum of gains. A detection may remain without a target.
+///
+/// Where targets are close together, the choice may be wrong. So each comes with the odds of its
+/// rivals, from the probabilities of all joint associations (JPDA; Fortmann, Bar-Shalom and Scheffe
+/// 1983).
 class LookAssignment {
  public:
   static constexpr int kMost = dynamics::kMostTargets;
@@ -47,18 +52,33 @@ class LookAssignment {
     });
     for (int row = 0; row < detections; ++row) {
       const int column = solver_.column_of(row);
-      target_of_[static_cast<std::size_t>(row)] =
-          column < targets && gain(row, column) > 0.0 ? column : -1;
+      target_of_[At(row)] = column < targets && gain(row, column) > 0.0 ? column : -1;
+    }
+    for (int row = 0; row < detections; ++row) {
+      for (int t = 0; t < targets; ++t) {
+        const double g = gain(row, t);
+        odds_[At(row)][At(t)] = g > 0.0 ? std::exp(g) : 0.0;
+      }
+    }
+    for (int row = 0; row < detections; ++row) {
+      const int t = target_of(row);
+      rivals_[At(row)] = t < 0 ? 0.0 : RivalsOf(odds_, detections, targets, row, t);
     }
   }
 
   /// Target of a detection in the last solution; -1: none.
-  int target_of(int detection) const { return target_of_[static_cast<std::size_t>(detection)]; }
+  int target_of(int detection) const { return target_of_[At(detection)]; }
+  /// How many times likelier the detection is of another target than false, see RivalsOf.
+  double rivals(int detection) const { return rivals_[At(detection)]; }
 
  private:
+  static constexpr std::size_t At(int i) { return static_cast<std::size_t>(i); }
+
   static constexpr double kForbidden = 1e6;
   AssignmentSolver<kMost, 2 * kMost> solver_;
   std::array<int, kMost> target_of_{};
+  std::array<double, kMost> rivals_{};
+  LookOdds odds_{};
 };
 
 }  // namespace stg::agent

@@ -77,6 +77,13 @@ class TargetFilter {
     (void)source;
     return {};
   }
+  /// Takes a detection of an AUV that Fit has compared with the estimate, as one of this target.
+  /// @param rivals how many times likelier it is of another target than false, see RivalsOf
+  virtual void Assign(const dynamics::Detection& detection, int source, double rivals) {
+    (void)detection;
+    (void)source;
+    (void)rivals;
+  }
   /// Takes an own detection of this target, with a stamp up to now.
   virtual void Detect(const dynamics::Detection& detection) = 0;
   /// Ends the input of a decision.

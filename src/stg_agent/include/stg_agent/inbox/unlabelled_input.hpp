@@ -16,10 +16,10 @@ namespace stg::agent {
 ///
 /// The detections of one AUV at one time are a look. Looks are taken in the order of time. In each,
 /// a target gets at most one detection, the one that LookAssignment gives it; the others are
-/// dropped. A shared measurement names the target that its sender believes it to be of. This name
-/// decides only where this AUV has no estimate of that target; so AUVs whose estimates of two
-/// targets are exchanged do not spoil each other's. Own detections without a target start an
-/// estimate that is missing by Initiation.
+/// dropped. It counts with the probability that it is of this target. A shared measurement names
+/// the target that its sender believes it to be of. This name decides only where this AUV has no
+/// estimate of that target; so AUVs whose estimates of two targets are exchanged do not spoil each
+/// other's. Own detections without a target start an estimate that is missing by Initiation.
 ///
 /// The result does not depend on the order of input between two calls of Give. It allocates nothing
 /// after construction.
@@ -57,8 +57,9 @@ class UnlabelledInput {
   static bool Before(const Input& a, const Input& b);
   bool Same(const dynamics::Detection& a, const dynamics::Detection& b) const;
   void GiveLook(const Input* look, int count, Filters* filters);
+  /// @param rivals see TargetFilter::Assign
   /// @param starts it is one of those that start an estimate, which support each other
-  void Take(int target, const Input& input, Filters* filters, bool starts = false);
+  void Take(int target, const Input& input, double rivals, Filters* filters, bool starts = false);
   void StartMissing(const dynamics::Detection* free, int count, Filters* filters);
 
   int self_;
@@ -68,7 +69,6 @@ class UnlabelledInput {
   LookAssignment assignment_;
   Initiation initiation_;
   std::vector<Confirmation> confirmations_;  // [targets]
-  NeighbourState shared_;                    // one measurement of a packet
   std::array<TimeNs, dynamics::kMostTargets> own_detections_{};
 };
 

@@ -69,15 +69,7 @@ class MeasurementFilter : public TargetFilter {
     if (comparison_) comparison_->Forget();
     sightings_.clear();
     played_ = 0;
-    now_.covers = -1;
-    now_.stamp = now_.information = 0;
-    now_.observed = false;
-    now_.last.source = now_.other.source = -1;
-    now_.mirrored = 0;
-    now_.third = -kAlone;
-    now_.surround = Surround();
-    now_.mixture.Clear();
-    now_.observers.Clear();
+    now_.Clear(-kAlone);
     first_ = 0;
     kept_ = 0;
     Keep();
@@ -116,6 +108,10 @@ class MeasurementFilter : public TargetFilter {
     DetectionFit fit = comparison_->Fit(d);
     fit.started = now_.mixture.size() > 0;
     return fit;
+  }
+
+  void Assign(const Detection& d, int source, double rivals) override {
+    Insert({d, source, rivals});
   }
 
   void Settle(TimeNs now, const OwnFrame& own) override {
@@ -233,7 +229,9 @@ class MeasurementFilter : public TargetFilter {
       for (int k = mixture.size() - 1; k >= 0; --k) mixture.Copy(k);
     }
     const int one_way = mixture.size() / ways;
-    for (int k = 0; k < mixture.size(); ++k) model_.Update(d, slot, k >= one_way, &mixture, k);
+    for (int k = 0; k < mixture.size(); ++k) {
+      model_.Update(d, slot, k >= one_way, s.rivals, &mixture, k);
+    }
     mixture.Normalise();
     mixture.Reduce(kKeptComponents);
     now_.surround.LookFrom(d.p_WO, since_s, mixture);

@@ -71,8 +71,9 @@ class SightingModel {
   /// Takes a detection: multiplies the component's weight by the likelihood. A detection that may
   /// be an outlier or a false alarm counts with the probability that it is true.
   /// @param mirror use mirror_azimuth_rad
-  void Update(const dynamics::Detection& d, int slot, bool mirror, GaussianMixture* mixture,
-              int k) const;
+  /// @param rivals how many times likelier it is to be of another target than false
+  void Update(const dynamics::Detection& d, int slot, bool mirror, double rivals,
+              GaussianMixture* mixture, int k) const;
 
   /// How a detection fits component k. The covariance of the innovation includes the second order
   /// of the linearisation.
@@ -105,10 +106,11 @@ class SightingModel {
   Point PointOf(const dynamics::Detection& d, double azimuth_rad) const;
   Form PointForm(const Point& point, int axis, int slot, const Geometry& at,
                  const Gaussian& g) const;
-  void UpdateRange(const dynamics::Detection& d, int slot, GaussianMixture* mixture, int k) const;
-  void UpdateBearing(const dynamics::Detection& d, double azimuth_rad, int slot,
+  void UpdateRange(const dynamics::Detection& d, int slot, double rivals, GaussianMixture* mixture,
+                   int k) const;
+  void UpdateBearing(const dynamics::Detection& d, double azimuth_rad, int slot, double rivals,
                      GaussianMixture* mixture, int k) const;
-  void UpdatePoint(const dynamics::Detection& d, double azimuth_rad, int slot,
+  void UpdatePoint(const dynamics::Detection& d, double azimuth_rad, int slot, double rivals,
                    GaussianMixture* mixture, int k) const;
   double Take(const Row& row, double innovation, double variance, double alike, double clutter,
               Gaussian g, int stride) const;

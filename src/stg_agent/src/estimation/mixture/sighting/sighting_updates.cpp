@@ -108,8 +108,8 @@ void SightingModel::Apply(const Row& row, double innovation, double variance, do
   }
 }
 
-void SightingModel::UpdateRange(const Detection& d, int slot, GaussianMixture* mixture,
-                                int k) const {
+void SightingModel::UpdateRange(const Detection& d, int slot, double rivals,
+                                GaussianMixture* mixture, int k) const {
   const Form form = RangeForm(d, slot, *mixture, k);
   const Gaussian g = mixture->at(k);
   const int stride = mixture->stride();
@@ -118,8 +118,8 @@ void SightingModel::UpdateRange(const Detection& d, int slot, GaussianMixture* m
   // depth on the other states is included.
   double *z = g.P + 2 * stride, *w = g.P + 5 * stride;
   const double kept[] = {g.x[2], g.x[5], z[2], z[5], w[5]};
-  *g.weight *=
-      Take(form.row, form.innovation, form.variance, form.alike, 1.0 / range_m_, g, stride);
+  *g.weight *= Take(form.row, form.innovation, form.variance, form.alike, (1.0 + rivals) / range_m_,
+                    g, stride);
   g.x[2] = kept[0];
   g.x[5] = kept[1];
   // A range that is only partly believed may have widened the depth together with the rest. This is
@@ -130,16 +130,19 @@ void SightingModel::UpdateRange(const Detection& d, int slot, GaussianMixture* m
   w[5] = kept[4];
 }
 
-void SightingModel::UpdateBearing(const Detection& d, double azimuth_rad, int slot,
+/// Azimuth and elevation are two numbers of one detection, and rivals count for both: this trusts
+/// them a little less than together.
+void SightingModel::UpdateBearing(const Detection& d, double azimuth_rad, int slot, double rivals,
                                   GaussianMixture* mixture, int k) const {
   const Gaussian g = mixture->at(k);
   Geometry at = GeometryOf(d, slot, *mixture, k);
   const Vec3<double> before = at.d * (1.0 / at.range);
   const Form azimuth = AzimuthForm(d, azimuth_rad, slot, at, g);
-  *g.weight *=
-      Take(azimuth.row, azimuth.innovation, azimuth.variance, 0.0, 0.5 / kPi, g, mixture->stride());
+  const double others = (1.0 + rivals) / kPi;
+  *g.weight *= Take(azimuth.row, azimuth.innovation, azimuth.variance, 0.0, 0.5 * others, g,
+                    mixture->stride());
   const Form elevation = ElevationForm(d, slot, GeometryOf(d, slot, *mixture, k));
-  *g.weight *= Take(elevation.row, elevation.innovation, elevation.variance, 0.0, 1.0 / kPi, g,
+  *g.weight *= Take(elevation.row, elevation.innovation, elevation.variance, 0.0, others, g,
                     mixture->stride());
 
   at = GeometryOf(d, slot, *mixture, k);
@@ -151,7 +154,7 @@ void SightingModel::UpdateBearing(const Detection& d, double azimuth_rad, int sl
 }
 
 /// A detection that gives a point is linear in the state, along the three axes of its noise.
-void SightingModel::UpdatePoint(const Detection& d, double azimuth_rad, int slot,
+void SightingModel::UpdatePoint(const Detection& d, double azimuth_rad, int slot, double rivals,
                                 GaussianMixture* mixture, int k) const {
   const Gaussian g = mixture->at(k);
   const Point point = PointOf(d, azimuth_rad);
@@ -163,7 +166,7 @@ void SightingModel::UpdatePoint(const Detection& d, double azimuth_rad, int slot
     const double s = form.row.Times(g, mixture->stride(), column) + form.variance;
     own *= NormalDensity(form.innovation * form.innovation / s, s);
   }
-  const double likelihood = own + false_share_ / ClutterVolume(d);
+  const double likelihood = own + false_share_ * (1.0 + rivals) / ClutterVolume(d);
   *g.weight *= likelihood;
   for (int axis = 0; axis < 3; ++axis) {
     const Form form = PointForm(point, axis, slot, GeometryOf(d, slot, *mixture, k), g);
@@ -171,19 +174,19 @@ void SightingModel::UpdatePoint(const Detection& d, double azimuth_rad, int slot
   }
 }
 
-void SightingModel::Update(const Detection& d, int slot, bool mirror, GaussianMixture* mixture,
-                           int k) const {
+void SightingModel::Update(const Detection& d, int slot, bool mirror, double rivals,
+                           GaussianMixture* mixture, int k) const {
   const double azimuth = mirror ? d.mirror_azimuth_rad : d.azimuth_rad;
   switch (d.kind) {
     case MeasurementKind::kRange:
-      UpdateRange(d, slot, mixture, k);
+      UpdateRange(d, slot, rivals, mixture, k);
       return;
     case MeasurementKind::kBearing:
-      UpdateBearing(d, azimuth, slot, mixture, k);
+      UpdateBearing(d, azimuth, slot, rivals, mixture, k);
       return;
     case MeasurementKind::kPosition:
     case MeasurementKind::kRangeBearing:
-      UpdatePoint(d, azimuth, slot, mixture, k);
+      UpdatePoint(d, azimuth, slot, rivals, mixture, k);
       return;
   }
 }
