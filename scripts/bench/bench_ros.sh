@@ -56,9 +56,10 @@ sleep 20
 memory=0
 for process in /proc/[0-9]*; do
   # A process may end during this step.
-  command=$({ tr '\0' '\n' <"$process/cmdline"; } 2>/dev/null) || continue
+  { mapfile -d '' -t words <"$process/cmdline"; } 2>/dev/null || continue
+  command=${words[*]}
   if [[ "$command" == */stg_agent/agent* && "$command" == *"$ROS_HOME"* ]]; then
-    kib=$(awk '/^VmRSS:/ { print $2 }' "$process/status")
+    kib=$(awk '/^VmRSS:/ { print $2 }' "$process/status" 2>/dev/null) || continue
     ((kib > memory)) && memory=$kib
   fi
 done

@@ -20,20 +20,21 @@ namespace {
 /// changed, such as a table of addresses that the loader filled, stays as it is.
 void ReturnFilePages() {
   std::ifstream mappings("/proc/self/smaps");
-  std::uintptr_t begin = 0, end = 0;
+  void *begin = nullptr, *end = nullptr;
   bool unchanged = false;
   for (std::string line; std::getline(mappings, line);) {
     const auto is = [&](const char* field) { return line.rfind(field, 0) == 0; };
     std::uint64_t inode = 0;
     char rights[5] = "";
     if (line.find(':') > line.find('-')) {  // the first line of a mapping
-      const int read = std::sscanf(line.c_str(), "%" SCNxPTR "-%" SCNxPTR " %4s %*x %*s %" SCNu64,
-                                   &begin, &end, rights, &inode);
+      const int read =
+          std::sscanf(line.c_str(), "%p-%p %4s %*x %*s %" SCNu64, &begin, &end, rights, &inode);
       unchanged = read == 4 && inode != 0 && rights[1] != 'w';
     } else if (is("Anonymous:") || is("Swap:")) {
       unchanged = unchanged && std::strtoull(line.c_str() + line.find(':') + 1, nullptr, 10) == 0;
     } else if (is("VmFlags:") && unchanged) {  // the last line of a mapping
-      madvise(reinterpret_cast<void*>(begin), end - begin, MADV_DONTNEED);
+      const auto size = static_cast<char*>(end) - static_cast<char*>(begin);
+      madvise(begin, static_cast<std::size_t>(size), MADV_DONTNEED);
     }
   }
 }

@@ -41,12 +41,13 @@ double RivalsOf(const LookOdds& odds, int detections, int targets, int detection
   int count = 0;
   for (int t = 0; t < targets; ++t) {
     double sum = 0.0;
-    for (int j = 0; j < detections; ++j) sum += At(odds, j, t);
-    if (t != target) alone += At(odds, detection, t);
-    if (t == target) alone += sum - At(odds, detection, t);
+    for (int j = 0; j < detections; ++j) {
+      sum += At(odds, j, t);
+      if ((j == detection) != (t == target)) alone += At(odds, j, t);
+    }
     if (sum > 0.0 && ++count <= kMostExact) possible.push_back(t);
   }
-  if (count > kMostExact) return alone;
+  if (alone == 0.0 || count > kMostExact) return alone;
   const double without_pair = SumOfProducts(
       odds, detections, possible, [&](int j, int t) { return j != detection || t != target; });
   const double without_both = SumOfProducts(
