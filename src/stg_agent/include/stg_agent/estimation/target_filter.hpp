@@ -69,7 +69,7 @@ class TargetFilter {
   virtual void Predict(TimeNs now) = 0;
   /// Takes the newest packet of a neighbour about this target.
   virtual void Fuse(const NeighbourState& packet) { (void)packet; }
-  /// Whether it can compare detections with its estimate.
+  /// Whether it can compare detections with its estimate; then it has Fit and Assign.
   virtual bool Associates() const { return false; }
   /// Compares a detection of an AUV, before it is taken, with the estimate at that time.
   virtual DetectionFit Fit(const dynamics::Detection& detection, int source) {
