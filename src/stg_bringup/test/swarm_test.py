@@ -41,7 +41,7 @@ class Swarm(unittest.TestCase):
         self.assertTrue(any(m.agents == tuple(range(AGENTS)) for m in first))
         end = first[-1].header.stamp
         # Each topic arrives in a thread of its own; on a busy machine one may be behind.
-        wait_for(lambda: received[-1].header.stamp > end, 20.0, "the packets of the whole episode")
+        wait_for(lambda: received and received[-1].header.stamp > end, 20.0, "all packets of the episode")
         delivered = {(e.source, e.sequence) for m in received for e in m.events
                      if (e.kind, e.receiver) == (PacketEvent.DELIVERED, 3)}  # fmt: skip
         # The comparison begins when both topics are connected.
