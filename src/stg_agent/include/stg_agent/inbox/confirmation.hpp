@@ -14,7 +14,7 @@ namespace stg::agent {
 /// tell if one target caused both. Without false alarms every detection is used.
 class Confirmation {
  public:
-  static constexpr int kNeeded = 2;  ///< M
+  static constexpr int kNeeded = 3;  ///< M
   static constexpr int kLooks = 5;   ///< N
 
   explicit Confirmation(const AgentModel& model);
