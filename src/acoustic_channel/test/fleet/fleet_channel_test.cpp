@@ -11,6 +11,7 @@
 
 #include "acoustic_channel/fleet/fleet_config.hpp"
 #include "auv_common/error.hpp"
+#include "scratch_file.hpp"
 
 namespace stg::acoustics {
 namespace {
@@ -264,10 +265,8 @@ TEST(FleetChannel, APacketThatNoModemTakesIsRefusedAndTheRestGoesOn) {
 }
 
 TEST(FleetConfig, TheSectionChannelIsEnoughAndTyposAreNamed) {
-  const std::string file = testing::TempDir() + "fleet_config_test.yaml";
-  const auto load = [&](const std::string& text, const std::vector<std::string>& overrides = {}) {
-    std::ofstream(file) << text;
-    return LoadFleetNetwork(file, overrides, 5);
+  const auto load = [](const std::string& text, const std::vector<std::string>& overrides = {}) {
+    return LoadFleetNetwork(ScratchFile(text).path(), overrides, 5);
   };
   const NetworkConfig n = load("seed: 3\nchannel: {model: range, range_m: 120.0}\n");
   EXPECT_EQ(n.run.agents, 5);

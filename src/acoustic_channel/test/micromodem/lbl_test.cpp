@@ -1,11 +1,10 @@
 #include "acoustic_channel/micromodem/lbl.hpp"
 
-#include <fstream>
-
 #include "acoustic_channel/emulator/modem_file.hpp"
 #include "acoustic_channel/micromodem/sentence.hpp"
 #include "auv_common/error.hpp"
 #include "modems/modem_fixture.hpp"
+#include "scratch_file.hpp"
 
 /// Ranging on a long baseline: $CCPDT and $CCPNT, their echoes $SNPDT and $SNPNT, and $SNTTA, as
 /// the drivers of Goby and dune send and read them.
@@ -149,12 +148,11 @@ TEST(MicromodemLbl, ARebootEndsTheRanging) {
 
 TEST(MicromodemLbl, TheFileSaysWhatATransponderIs) {
   const auto load = [](const std::string& keys, const std::string& profile = "micromodem_psk_r1") {
-    const std::string path = testing::TempDir() + "/transponder.yaml";
-    std::ofstream(path) << "vehicles:\n  - {name: a, position_m: [0, 0, -20], " << keys
-                        << "}\nchannel:\n  model: physical\n  access: aloha\n  physical:\n"
-                           "    modem: {profile: "
-                        << profile << ", queue: fifo}\n";
-    return LoadModemFile(path).vehicles[0];
+    const ScratchFile file("vehicles:\n  - {name: a, position_m: [0, 0, -20], " + keys +
+                           "}\nchannel:\n  model: physical\n  access: aloha\n  physical:\n"
+                           "    modem: {profile: " +
+                           profile + ", queue: fifo}\n");
+    return LoadModemFile(file.path()).vehicles[0];
   };
   const ModemVehicle remus = load("transponder: {letter: C}");
   ASSERT_TRUE(remus.transponder);

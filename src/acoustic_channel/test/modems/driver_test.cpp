@@ -1,6 +1,3 @@
-#include <unistd.h>
-
-#include <fstream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,6 +8,7 @@
 #include "acoustic_channel/emulator/modem_server.hpp"
 #include "auv_common/error.hpp"
 #include "modem_fixture.hpp"
+#include "scratch_file.hpp"
 
 /// Drivers with emulated modems: over byte pipes in simulated time, and over TCP.
 namespace stg::acoustics {
@@ -231,17 +229,16 @@ TEST(MicromodemDriver, AModemOfTheFirstGenerationGetsCycles) {
 /// No receiver knows which packets its modem did not hear. It must not count a packet as lost
 /// because others heard it.
 TEST(ModemChannel, EveryReceiverCountsThePacketsThatItHears) {
-  const std::string path = testing::TempDir() + "/channel_" + std::to_string(getpid()) + ".yaml";
-  std::ofstream file(path);
-  file << "vehicles:\n";
+  std::string text = "vehicles:\n";
   for (const char* place : {"0.0", "30.0", "60.0"}) {
-    file << "  - {name: v" << place[0] << ", position_m: [" << place
-         << ", 0.0, -20.0], modem: {tcp: 0, interpreter: net}}\n";
+    text += std::string("  - {name: v") + place[0] + ", position_m: [" + place +
+            ", 0.0, -20.0], modem: {tcp: 0, interpreter: net}}\n";
   }
-  file << "channel:\n  model: physical\n  access: aloha\n  physical:\n    modem:\n"
-          "      profile: evologics_s2c\n      queue: fifo\n";
-  file.close();
-  const ModemFile modems = LoadModemFile(path);
+  text +=
+      "channel:\n  model: physical\n  access: aloha\n  physical:\n    modem:\n"
+      "      profile: evologics_s2c\n      queue: fifo\n";
+  const ScratchFile file(text);
+  const ModemFile modems = LoadModemFile(file.path());
   ModemServer server(modems, "");
   ModemChannelConfig config;
   for (int i = 0; i < 3; ++i) {

@@ -1,12 +1,11 @@
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <fstream>
 #include <string>
 
 #include "acoustic_channel/driver/modem_channel.hpp"
 #include "acoustic_channel/emulator/modem_server.hpp"
 #include "auv_common/error.hpp"
+#include "scratch_file.hpp"
 
 /// A modem with a port is a node of the simulated water, and modems with ports are the channel of a
 /// swarm. The modems here are emulated ones, each in its own tank.
@@ -15,15 +14,12 @@ namespace {
 
 constexpr TimeNs kTick = 2'000'000;
 
-std::string WaterWith(const std::string& name, const std::string& first,
-                      const std::string& second) {
-  const std::string path =
-      testing::TempDir() + "/" + name + "_" + std::to_string(getpid()) + ".yaml";
-  std::ofstream(path) << "vehicles:\n  - {name: a, position_m: [0.0, 0.0, -20.0], " << first
-                      << "}\n  - {name: b, position_m: [15.0, 0.0, -20.0], " << second
-                      << "}\nchannel:\n  model: physical\n  access: aloha\n  physical:\n"
-                         "    modem:\n      profile: evologics_s2c\n      queue: fifo\n";
-  return path;
+ModemFile WaterWith(const std::string& first, const std::string& second) {
+  const ScratchFile file("vehicles:\n  - {name: a, position_m: [0.0, 0.0, -20.0], " + first +
+                         "}\n  - {name: b, position_m: [15.0, 0.0, -20.0], " + second +
+                         "}\nchannel:\n  model: physical\n  access: aloha\n  physical:\n"
+                         "    modem:\n      profile: evologics_s2c\n      queue: fifo\n");
+  return LoadModemFile(file.path());
 }
 
 constexpr char kModem[] = "modem: {tcp: 0, interpreter: net}";
@@ -39,10 +35,8 @@ ModemPort HostOf(const BytePort& port, int address) {
 }
 
 TEST(Gateway, WhatOneSideHearsTheOtherSends) {
-  ModemServer tank(LoadModemFile(WaterWith("tank", kModem, kModem)), "");
-  ModemServer water(LoadModemFile(WaterWith("water", kModem,
-                                            "gateway: {port: " + AddressOf(*tank.port(0)) + "}")),
-                    "");
+  ModemServer tank(WaterWith(kModem, kModem), "");
+  ModemServer water(WaterWith(kModem, "gateway: {port: " + AddressOf(*tank.port(0)) + "}"), "");
   ModemPort in_water = HostOf(*water.port(0), 1), in_tank = HostOf(*tank.port(1), 2);
   const auto serve = [&](double seconds) {
     const TimeNs end = SteadyNow() + static_cast<TimeNs>(seconds * 1e9);
@@ -71,14 +65,12 @@ TEST(Gateway, WhatOneSideHearsTheOtherSends) {
 }
 
 TEST(Gateway, ItNeedsAPortAndStandsAlone) {
-  EXPECT_THROW(LoadModemFile(WaterWith("none", kModem, "gateway: {baud: 19200}")), UserError);
-  EXPECT_THROW(LoadModemFile(
-                   WaterWith("both", kModem, std::string(kModem) + ", gateway: {port: /dev/null}")),
-               UserError);
+  EXPECT_THROW(WaterWith(kModem, "gateway: {baud: 19200}"), UserError);
+  EXPECT_THROW(WaterWith(kModem, std::string(kModem) + ", gateway: {port: /dev/null}"), UserError);
 }
 
 TEST(ModemChannel, AStepsPacketIsHeardInALaterStep) {
-  ModemServer tank(LoadModemFile(WaterWith("swarm", kModem, kModem)), "");
+  ModemServer tank(WaterWith(kModem, kModem), "");
   ChannelConfig config;
   config.model = "physical";
   config.access = "aloha";

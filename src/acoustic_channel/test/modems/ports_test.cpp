@@ -6,29 +6,28 @@
 #include <unistd.h>
 
 #include <array>
-#include <fstream>
 #include <string>
 #include <vector>
 
 #include "acoustic_channel/emulator/modem_server.hpp"
 #include "auv_common/error.hpp"
+#include "scratch_file.hpp"
 
 /// Emulated modems behind sockets and terminals, in real time.
 namespace stg::acoustics {
 namespace {
 
-std::string FileWith(const std::string& alpha, const std::string& beta,
+ModemFile ModemsWith(const std::string& alpha, const std::string& beta,
                      const std::string& gamma = "") {
-  const std::string path = testing::TempDir() + "/modems_" + std::to_string(getpid()) + ".yaml";
-  std::ofstream(path)
-      << "vehicles:\n"
-         "  - {name: alpha, position_m: [0.0, 0.0, -20.0], modem: {"
-      << alpha << "}}\n  - {name: beta, position_m: [150.0, 0.0, -20.0], modem: {" << beta
-      << (gamma.empty() ? "" : "}}\n  - {name: gamma, position_m: [0.0, 150.0, -20.0], modem: {")
-      << gamma
-      << "}}\nchannel:\n  model: physical\n  access: aloha\n  physical:\n    modem:\n"
-         "      profile: evologics_s2c\n      queue: fifo\n";
-  return path;
+  const ScratchFile file(
+      "vehicles:\n"
+      "  - {name: alpha, position_m: [0.0, 0.0, -20.0], modem: {" +
+      alpha + "}}\n  - {name: beta, position_m: [150.0, 0.0, -20.0], modem: {" + beta +
+      (gamma.empty() ? "" : "}}\n  - {name: gamma, position_m: [0.0, 150.0, -20.0], modem: {") +
+      gamma +
+      "}}\nchannel:\n  model: physical\n  access: aloha\n  physical:\n    modem:\n"
+      "      profile: evologics_s2c\n      queue: fifo\n");
+  return LoadModemFile(file.path());
 }
 
 sockaddr_in PlaceOf(const BytePort& port) {
@@ -72,7 +71,7 @@ struct Client {
 const std::string kNet = "protocol: s2c, tcp: 0, interpreter: net";
 
 TEST(ModemPorts, AMessageGoesFromOneSocketToTheOther) {
-  ModemServer server(LoadModemFile(FileWith(kNet, kNet)), "");
+  ModemServer server(ModemsWith(kNet, kNet), "");
   Client alpha(*server.port(0)), beta(*server.port(1));
   alpha.Say("AT*SENDIM,5,2,ack,hello\n");
   EXPECT_TRUE(beta.Hears(&server, "RECVIM,5,1,2,ack,"));
@@ -81,7 +80,7 @@ TEST(ModemPorts, AMessageGoesFromOneSocketToTheOther) {
 
 TEST(ModemPorts, OnlyAMicromodemHasATick) {
   try {
-    LoadModemFile(FileWith(kNet + ", pps: true", kNet));
+    ModemsWith(kNet + ", pps: true", kNet);
     ADD_FAILURE() << "the key was accepted";
   } catch (const UserError& error) {
     EXPECT_NE(std::string(error.what()).find("micromodem"), std::string::npos) << error.what();
@@ -89,7 +88,7 @@ TEST(ModemPorts, OnlyAMicromodemHasATick) {
 }
 
 TEST(ModemPorts, ASecondClientIsRefusedAndTheFirstGoesOn) {
-  ModemServer server(LoadModemFile(FileWith(kNet, kNet)), "");
+  ModemServer server(ModemsWith(kNet, kNet), "");
   Client first(*server.port(0));
   first.Say("AT?AL\n");
   EXPECT_TRUE(first.Hears(&server, "1\r\n"));
@@ -101,7 +100,7 @@ TEST(ModemPorts, ASecondClientIsRefusedAndTheFirstGoesOn) {
 }
 
 TEST(ModemPorts, OneOfManyClientsIsObeyedAndAllAreTold) {
-  ModemServer server(LoadModemFile(FileWith(kNet + ", clients: 2", kNet)), "");
+  ModemServer server(ModemsWith(kNet + ", clients: 2", kNet), "");
   std::vector<std::string> log;
   server.say = [&](const std::string& what) { log.push_back(what); };
   Client first(*server.port(0)), beta(*server.port(1));
@@ -133,7 +132,7 @@ TEST(ModemPorts, OneOfManyClientsIsObeyedAndAllAreTold) {
 }
 
 TEST(ModemPorts, AModemWithoutPowerHasNoPort) {
-  ModemServer server(LoadModemFile(FileWith(kNet, kNet)), "");
+  ModemServer server(ModemsWith(kNet, kNet), "");
   Client before(*server.port(0));
   before.Say("AT!RT900\n");
   EXPECT_TRUE(before.Hears(&server, "[*]OK\r\n"));
@@ -152,7 +151,7 @@ TEST(ModemPorts, AModemWithoutPowerHasNoPort) {
 }
 
 TEST(ModemPorts, ASlowLineTakesItsTime) {
-  ModemServer server(LoadModemFile(FileWith(kNet + ", serial_baud: 300", kNet)), "");
+  ModemServer server(ModemsWith(kNet + ", serial_baud: 300", kNet), "");
   Client client(*server.port(0));
   const TimeNs start = SteadyNow();
   client.Say("AT?MODE\nAT?AL\n");
@@ -161,14 +160,14 @@ TEST(ModemPorts, ASlowLineTakesItsTime) {
 }
 
 TEST(ModemPorts, SettingsOfTheFileAreStored) {
-  ModemServer server(LoadModemFile(FileWith(kNet + ", settings: {L: 2, RT: 3000}", kNet)), "");
+  ModemServer server(ModemsWith(kNet + ", settings: {L: 2, RT: 3000}", kNet), "");
   Client client(*server.port(0));
   client.Say("AT?L\nAT?RT\nAT!RT5000\nAT?RT\n");
   EXPECT_TRUE(client.Hears(&server, "2\r\n3000\r\n[*]OK\r\n[*]5000\r\n"));
 }
 
 TEST(ModemPorts, AClientThatVanishesMakesRoomForTheNext) {
-  ModemServer server(LoadModemFile(FileWith(kNet, kNet)), "");
+  ModemServer server(ModemsWith(kNet, kNet), "");
   {
     Client client(*server.port(0));
     client.Say("AT?A");
@@ -181,7 +180,7 @@ TEST(ModemPorts, AClientThatVanishesMakesRoomForTheNext) {
 }
 
 TEST(ModemPorts, AFloodDisturbsNobodyElse) {
-  ModemServer server(LoadModemFile(FileWith(kNet, kNet)), "");
+  ModemServer server(ModemsWith(kNet, kNet), "");
   Client flood(*server.port(0)), quiet(*server.port(1));
   const std::string noise(60'000, 'x');
   for (int k = 0; k < 20; ++k) {
@@ -195,7 +194,7 @@ TEST(ModemPorts, AFloodDisturbsNobodyElse) {
 /// One client misbehaves at the first modem. The hosts of the two others talk to each other.
 struct Disturbance : testing::Test {
   Disturbance()
-      : server(LoadModemFile(FileWith(kNet, kNet, kNet)), ""),
+      : server(ModemsWith(kNet, kNet, kNet), ""),
         alpha(std::make_unique<Client>(*server.port(0))),
         beta(*server.port(1)),
         gamma(*server.port(2)) {}
@@ -271,8 +270,7 @@ TEST(ModemPorts, ASerialDeviceIsOneMorePort) {
   const int host = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK);
   ASSERT_TRUE(host >= 0 && grantpt(host) == 0 && unlockpt(host) == 0);
   const std::string device = ptsname(host);
-  ModemServer server(
-      LoadModemFile(FileWith("interpreter: net, baud: 9600, serial: " + device, kNet)), "");
+  ModemServer server(ModemsWith("interpreter: net, baud: 9600, serial: " + device, kNet), "");
   for (int k = 0; k < 5; ++k) server.Serve(server.Now() + 1'000'000);
   Client beta(*server.port(1));
   const std::string message = "AT*SENDIM,5,2,noack,hello\r";
@@ -292,8 +290,7 @@ TEST(ModemPorts, ASerialDeviceIsOneMorePort) {
 TEST(ModemPorts, ATerminalIsOneMorePort) {
   const std::string link = testing::TempDir() + "/modem_link_" + std::to_string(getpid());
   {
-    ModemServer server(
-        LoadModemFile(FileWith("protocol: s2c, interpreter: net, pty: " + link, kNet)), "");
+    ModemServer server(ModemsWith("protocol: s2c, interpreter: net, pty: " + link, kNet), "");
     const int host = open(link.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK);
     ASSERT_GE(host, 0);
     ASSERT_EQ(write(host, "AT?AL\r", 6), 6);
@@ -313,7 +310,7 @@ TEST(ModemPorts, ATerminalIsOneMorePort) {
 
 TEST(ModemPorts, FilesThatCannotWorkAreRefused) {
   const auto refused = [](const std::string& alpha, const std::string& beta) {
-    EXPECT_THROW(LoadModemFile(FileWith(alpha, beta)), UserError) << alpha << " " << beta;
+    EXPECT_THROW(ModemsWith(alpha, beta), UserError) << alpha << " " << beta;
   };
   refused("protocol: s2c", kNet);
   refused("protocol: morse, tcp: 0", kNet);

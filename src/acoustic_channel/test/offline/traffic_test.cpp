@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "acoustic_channel/modem/modem_profile.hpp"
 #include "acoustic_channel/offline/track.hpp"
 #include "auv_common/error.hpp"
+#include "scratch_file.hpp"
 
 namespace stg::acoustics {
 namespace {
@@ -75,19 +75,19 @@ TEST(Traffic, FlowsComeInOrderAndDoNotDependOnEachOther) {
 class TrackFile : public ::testing::Test {
  protected:
   Track Load(const std::string& text) {
-    file_ = testing::TempDir() + "track.csv";
-    std::ofstream(file_) << text;
-    return Track::Load(file_);
+    const ScratchFile file(text, ".csv");
+    path_ = file.path();
+    return Track::Load(path_);
   }
   std::string Refusal(const std::string& text) {
     try {
       Load(text);
     } catch (const UserError& e) {
-      return std::string(e.what()).substr(file_.size());
+      return std::string(e.what()).substr(path_.size());
     }
     return "";
   }
-  std::string file_;
+  std::string path_;
 };
 
 TEST_F(TrackFile, GoesOnStraightLinesAndRestsAtItsEnds) {
