@@ -68,16 +68,19 @@ void Assign::Act(const ControllerInput<double>& in, double* action) const { Foll
 void Assign::Act(const ControllerInput<Pack>& in, Pack* action) const { Follow(in, action); }
 
 void Assign::Act(const AgentView& agent, float* action) const {
+  ChooseWhenDue(agent);
+  Controller::Act(agent, action);
+}
+
+void Assign::ChooseWhenDue(const AgentView& agent) const {
   EntityMemory& memory = agent.memory();
   const auto since_s = [&](TimeNs t) { return Seconds(memory.now - t); };
   const bool due = !memory.assigned || since_s(memory.assigned_time) >= o_.period_s - 1e-6;
-  if (agent.beliefs() > 1 && due) {
-    const bool settled = memory.assigned && since_s(memory.followed_since) < o_.hysteresis_s;
-    if (!settled) agent.Follow(Choose(agent));
-    memory.assigned = true;
-    memory.assigned_time = memory.now;
-  }
-  Controller::Act(agent, action);
+  if (agent.beliefs() < 2 || !due) return;
+  const bool settled = memory.assigned && since_s(memory.followed_since) < o_.hysteresis_s;
+  if (!settled) agent.Follow(Choose(agent));
+  memory.assigned = true;
+  memory.assigned_time = memory.now;
 }
 
 int Assign::Choose(const AgentView& agent) const {

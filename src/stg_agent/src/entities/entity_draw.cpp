@@ -7,13 +7,6 @@
 #include "stg_agent/policy/gaussian.hpp"
 
 namespace stg::agent {
-namespace {
-
-bool Chooses(const EntityPolicy& policy) {
-  return policy.parameters().network == EntityNetwork::kGraph;
-}
-
-}  // namespace
 
 void LogShares(const float* logits, int count, float* log_shares) {
   const float most = *std::max_element(logits, logits + count);
@@ -46,7 +39,7 @@ double LogDensity(const EntityPolicy& policy, const Entities& entities, int choi
   const int count = policy.Choices(entities, logits, means);
   const int size = CommandSize(policy.action());
   double log_density = 0.0;
-  if (Chooses(policy)) {
+  if (policy.chooses()) {
     float log_shares[kMostChoices] = {};
     LogShares(logits, count, log_shares);
     log_density = static_cast<double>(log_shares[choice]);
@@ -62,7 +55,7 @@ bool FlyExploring(const EntityPolicy& policy, const AgentView& agent, Random* ra
     BuildEntities(agent, &decision->entities);
     float logits[kMostChoices], means[kMostChoices * kCommandNumbers];
     CommandDistribution of;
-    of.chooses = Chooses(policy);
+    of.chooses = policy.chooses();
     of.choices = policy.Choices(decision->entities, logits, means);
     of.logits = logits;
     of.means = means;
@@ -70,7 +63,11 @@ bool FlyExploring(const EntityPolicy& policy, const AgentView& agent, Random* ra
     of.size = CommandSize(policy.action());
     decision->log_probability = DrawCommand(of, random, &decision->choice, decision->command);
     TakeCommand(agent, policy.action(), decision->command);
-    if (of.chooses) TakeChoice(agent, decision->entities, decision->choice);
+    if (of.chooses) {
+      TakeChoice(agent, decision->entities, decision->choice);
+    } else {
+      ChooseByLaw(agent);
+    }
   }
   FollowCommand(agent, policy.action(), out);
   return due;

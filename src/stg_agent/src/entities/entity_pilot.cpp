@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "stg_agent/controllers/assign.hpp"
 #include "stg_agent/controllers/search_laws.hpp"
 
 namespace stg::agent {
@@ -100,6 +101,11 @@ void TakeChoice(const AgentView& agent, const Entities& entities, int choice) {
   if (choice < entities.targets) agent.Follow(entities.target_of_row[choice]);
 }
 
+void ChooseByLaw(const AgentView& agent) {
+  static const Assign law{AssignOptions{}};
+  law.ChooseWhenDue(agent);
+}
+
 void FollowCommand(const AgentView& agent, EntityAction action, float* out) {
   const AgentModel& model = agent.model();
   const EntityMemory& memory = agent.memory();
@@ -126,7 +132,11 @@ void Fly(const EntityPolicy& policy, const AgentView& agent, float* out) {
     float command[kCommandNumbers];
     const int choice = policy.Command(entities, command);
     TakeCommand(agent, policy.action(), command);
-    if (policy.parameters().network == EntityNetwork::kGraph) TakeChoice(agent, entities, choice);
+    if (policy.chooses()) {
+      TakeChoice(agent, entities, choice);
+    } else {
+      ChooseByLaw(agent);
+    }
   }
   FollowCommand(agent, policy.action(), out);
 }

@@ -67,7 +67,8 @@ TEST(EntityFlight, CommandsOfZeroAreTheLawOfTheSituationBitForBit) {
   } cases[] = {{"encircle", "field", "nominal"},
                {"formation", "field", "fast_target"},
                {"search_map", "field", "combined_stress"},
-               {"search_map", "search", "nominal"}};
+               {"search_map", "search", "nominal"},
+               {"assign", "many8", "nominal"}};
   for (const auto& c : cases) {
     ExpectZerosAre(agent::EntityAction::kLaw5, c.law, Short(Shipped(c.scenario, c.condition), 120));
   }

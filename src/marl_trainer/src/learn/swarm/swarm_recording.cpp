@@ -40,7 +40,7 @@ Finding CheckCommand(const SwarmCommand& c, const agent::EntityPolicy& policy) {
     return {Flaw::kForeignPolicy,
             "'" + c.policy_id.substr(0, 80) + "', not '" + policy.metadata().id + "'"};
   }
-  const bool chooses = policy.parameters().network == agent::EntityNetwork::kGraph;
+  const bool chooses = policy.chooses();
   const int choices = chooses ? d.entities.targets + 1 : 1;
   if (d.choice < 0 || d.choice >= choices) {
     return {Flaw::kAction, "choice " + std::to_string(d.choice) + " of " + std::to_string(choices)};

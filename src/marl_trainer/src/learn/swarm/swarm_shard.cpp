@@ -114,6 +114,8 @@ void SwarmShard::Observe(const SwarmActor& actor, std::uint32_t collection, int 
     agent::TakeCommand(view, config_.action, command);
     if (actor.network.chooses()) {
       agent::TakeChoice(view, entities_[static_cast<std::size_t>(row)], choice);
+    } else {
+      agent::ChooseByLaw(view);
     }
   }
 }

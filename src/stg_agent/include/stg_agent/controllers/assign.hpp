@@ -39,6 +39,8 @@ class Assign final : public Controller {
   /// Chooses a target when `period` is over; the choice holds from the next decision on.
   void Act(const AgentView& agent, float* action) const override;
 
+  /// Chooses a target when `period` is over, as Act does.
+  void ChooseWhenDue(const AgentView& agent) const;
   /// The target that the AUV should follow, from its present knowledge.
   int Choose(const AgentView& agent) const;
 

@@ -81,6 +81,8 @@ class EntityPolicy {
   /// Returns the row of the target that is chosen, or their number: to search. Of `pool` always 0.
   int Command(const Entities& entities, float* command) const;
 
+  /// Whether it chooses a target or to search.
+  bool chooses() const { return parameters_.network == EntityNetwork::kGraph; }
   EntityAction action() const { return parameters_.action; }
   const Parameters& parameters() const { return parameters_; }
   const PolicyMetadata& metadata() const { return parameters_.metadata; }
