@@ -24,11 +24,11 @@ class Latest:
         self.message = message
         self.count += 1
 
-    def wait(self, timeout_s=20.0):
+    def wait(self, timeout_s=60.0):
         """Returns the newest message. Waits for the first one."""
         return wait_for(lambda: self.message, timeout_s, self._subscriber.name)
 
-    def wait_for_more(self, number, timeout_s=20.0):
+    def wait_for_more(self, number, timeout_s=60.0):
         """Waits for `number` further messages."""
         wanted = self.count + number
         wait_for(lambda: self.count >= wanted, timeout_s, f"more of {self._subscriber.name}")
@@ -85,7 +85,7 @@ def kill(node, number=signal.SIGKILL):
     return pid
 
 
-def wait_for_restart(node, old_pid, timeout_s=20.0):
+def wait_for_restart(node, old_pid, timeout_s=60.0):
     """Waits until a node runs as another process."""
 
     def restarted():

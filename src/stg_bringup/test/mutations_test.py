@@ -105,10 +105,10 @@ class Mutations(unittest.TestCase):
         self.report.wait_for_more(20)
         self.reception.wait_for_more(20)
         self.assertEqual({node: rosnode_pid(node) for node in self.nodes}, self.pids)
-        wait_for(lambda: len(self.task.message.neighbours) == 3, 20.0, "neighbours are heard")
+        wait_for(lambda: len(self.task.message.neighbours) == 3, 60.0, "neighbours are heard")
         # The episode that ends first may have begun during the disturbance.
-        self.summary.wait_for_more(2, 40.0)
-        wait_for(lambda: self.summary.message.complete, 40.0, "a complete episode")
+        self.summary.wait_for_more(2, 120.0)
+        wait_for(lambda: self.summary.message.complete, 120.0, "a complete episode")
 
     def test_1_the_test_hears_of_the_topics_that_matter(self):
         topics = {tap.topic for tap in self.taps}
