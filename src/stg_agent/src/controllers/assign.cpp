@@ -109,9 +109,10 @@ int Assign::Choose(const AgentView& agent) const {
     const int place = column % each;
     const double d = std::hypot(goal.p_WT.x - m.p_W.x, goal.p_WT.y - m.p_W.y);
     const double way_s = std::max(0.0, d - model.task.desired_distance_m) / goal.lead_mps;
-    const double rank =
-        place < o_.least ? -kUnmanned_s * (o_.least - place) : o_.load_s * (place - o_.least + 1);
-    return way_s + rank - (m.follows == goal.target ? o_.hysteresis_s : 0.0);
+    const int beyond = place - o_.least + 1;
+    const double place_s =
+        beyond <= 0 ? way_s + kUnmanned_s * (beyond - 1) : o_.extra * way_s + o_.load_s * beyond;
+    return place_s - (m.follows == goal.target ? o_.hysteresis_s : 0.0);
   };
   AssignmentSolver<kMostSwarm, kMostPlaces> solver;
   solver.Solve(swarm, each * targets, cost);
@@ -121,6 +122,8 @@ int Assign::Choose(const AgentView& agent) const {
 void Describe(AssignOptions* o, config::Table* t) {
   t->Add("load", &o->load_s, NonNegative(1e5), "s",
          "added cost of a target for each AUV beyond the number `least`");
+  t->Add("extra", &o->extra, config::kFraction, "-",
+         "share of the way to the target that counts for an AUV beyond the number `least`");
   t->Add("hysteresis", &o->hysteresis_s, NonNegative(1e5), "s",
          "an AUV changes its target only where another costs less by this much, and not before "
          "this time since its last change");

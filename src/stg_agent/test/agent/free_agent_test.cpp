@@ -190,6 +190,26 @@ TEST(Assign, EveryTargetHasTwoBeforeAnotherHasThree) {
   EXPECT_EQ(chosen, (std::vector<int>{0, 0, 1, 1}));
 }
 
+/// One AUV for each target is enough here. The near AUV can leave its target to the second one, so
+/// that nobody waits for the third, which is far away from both.
+TEST(Assign, TheWayOfASurplusAuvMattersLittle) {
+  AgentModel s = FreeModel(3, 2);
+  const std::vector<Vec3<double>> targets{{0.0, 0.0, 0.0}, {0.35, 0.0, 0.0}};
+  for (const double extra : {1.0, 0.2}) {
+    AssignOptions o;
+    o.fast_mps = 0.5;
+    o.hysteresis_s = 0.0;
+    o.least = 1;
+    o.extra = extra;
+    Flown f(s, 0);
+    f.Start(targets);
+    f.agent.Receive(Heard(s, Following(1, 0, {-0.2, 0.0, 0.0}, 0), 0));
+    f.agent.Receive(Heard(s, Following(2, 0, {0.0, 0.9, 0.0}, 1), 0));
+    f.Observe(0, {0.1, 0.0, 0.0});
+    EXPECT_EQ(Assign(o).Choose(f.agent.view()), extra == 1.0 ? 0 : 1);
+  }
+}
+
 TEST(Members, WhoHasLeftForgetsAndStandsStill) {
   AgentModel s = FreeModel(2, 1);
   s.task.assignment = Assignment::kModulo;

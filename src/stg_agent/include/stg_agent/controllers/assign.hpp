@@ -12,6 +12,7 @@ namespace stg::agent {
 /// Constants of the law.
 struct AssignOptions {
   double load_s = 100.0;       ///< added cost of a target for each AUV beyond `least`
+  double extra = 0.2;          ///< share of the way that counts for an AUV beyond `least`
   double hysteresis_s = 60.0;  ///< shortest time with a target, and gain of a change
   int least = 2;               ///< number of AUVs that each target should have
   double period_s = 5.0;       ///< time between two choices
@@ -25,7 +26,8 @@ void Describe(AssignOptions* o, config::Table* t);
 /// Each AUV assigns targets to all AUVs that it knows, at the least total cost. The cost of an AUV
 /// is its time to the target's circle, max(0, d - d*) / (v_max - v_T), plus a load; a target that
 /// an AUV follows already is cheaper by `hysteresis`. No target gets more than `least` AUVs before
-/// each target has so many. No target gets more than ceil(AUVs / targets) + 1. All AUVs use the
+/// each target has so many. The way of an AUV beyond that counts less, because the target is
+/// followed before it arrives. No target gets more than ceil(AUVs / targets) + 1. All AUVs use the
 /// same packets, so they find the same assignment, except where packets were lost. The Hungarian
 /// method solves it.
 ///
