@@ -21,7 +21,20 @@ Level<T> Within(const Level<T>& v, double lo, double hi) {
   return v * (Clip(speed, T(lo), T(hi)) / speed);
 }
 
+constexpr double kNear_m = 60.0;
+
+/// True if the AUV flies the larger of two circles.
+template <class T>
+bool Outer(const ControllerInput<T>& in) {
+  return (in.id / in.model.target.count) % 2 != 0;
+}
+
 }  // namespace
+
+bool Encircle::TwoCircles(const AgentModel& s) const {
+  const int team = (s.run.agents + s.target.count - 1) / s.target.count;
+  return team > options.ring_team;
+}
 
 template <class T>
 T Encircle::Height(const ControllerInput<T>& in, const T& deeper_m) const {
@@ -37,13 +50,19 @@ T Encircle::Height(const ControllerInput<T>& in, const T& deeper_m) const {
 template <class T>
 T Encircle::Radius(const ControllerInput<T>& in, const T& dz) const {
   const AgentModel& s = in.model;
-  const int team = (s.run.agents + s.target.count - 1) / s.target.count;
   double d = s.task.desired_distance_m;
-  if (team > options.ring_team) {
-    d *= (in.id / s.target.count) % 2 == 0 ? 1.0 - options.ring : 1.0 + options.ring;
-  }
+  if (TwoCircles(s)) d *= Outer(in) ? 1.0 + options.ring : 1.0 - options.ring;
   const double least = options.smallest_circle;
   return Sqrt(Max(T(d * d) - dz * dz, T(least * least * d * d)));
+}
+
+template <class T>
+T Encircle::Guided(const ControllerInput<T>& in, const T& circle, const T& wider) const {
+  const T least = T(0.25) * circle;
+  if (!TwoCircles(in.model)) return Max(circle + wider, least);
+  const T side(Outer(in) ? 1.0 : -1.0);
+  const T crowded = Clip(side * wider, T(0.0), T(kNear_m));
+  return Max(circle + wider - side * crowded, least);
 }
 
 template <class T>
@@ -103,7 +122,7 @@ Vec3<T> Encircle::Velocity(const ControllerInput<T>& in, const Guidance<T>& guid
   const Vec3<T> p_WT = k.p_WB + k.r_BT_W;
   const T z = Height(in, guidance.depth_m);
   const T own_circle = Radius(in, z - p_WT.z);
-  const T R = Max(own_circle + guidance.radius_m, T(0.25) * own_circle);
+  const T R = Guided(in, own_circle, guidance.radius_m);
 
   // Future position of the vehicle, because commands take effect late and last for a decision.
   const Level<T> own{k.v_WB.x, k.v_WB.y};
@@ -122,8 +141,7 @@ Vec3<T> Encircle::Velocity(const ControllerInput<T>& in, const Guidance<T>& guid
   const auto on_circle = Abs(distance - R) < T(o.on_circle * d);
   T ahead(kTwoPi), behind(kTwoPi);
   Level<T> aside;
-  const int team = (s.run.agents + s.target.count - 1) / s.target.count;
-  const bool rings = team > o.ring_team;
+  const bool rings = TwoCircles(s);
   const T reach = rings ? T(o.ring * d) : T(o.mate_on_circle * d);
   for (int j = 0; j < in.neighbour_count; ++j) {
     const NeighbourSight<T>& n = in.neighbours[j];
@@ -167,6 +185,9 @@ template double Encircle::Height(const ControllerInput<double>&, const double&) 
 template Pack Encircle::Height(const ControllerInput<Pack>&, const Pack&) const;
 template double Encircle::Radius(const ControllerInput<double>&, const double&) const;
 template Pack Encircle::Radius(const ControllerInput<Pack>&, const Pack&) const;
+template double Encircle::Guided(const ControllerInput<double>&, const double&,
+                                 const double&) const;
+template Pack Encircle::Guided(const ControllerInput<Pack>&, const Pack&, const Pack&) const;
 template Level<double> Encircle::Miss(const Level<double>&, const Level<double>&,
                                       const Level<double>&, const double&, const double&) const;
 template Level<Pack> Encircle::Miss(const Level<Pack>&, const Level<Pack>&, const Level<Pack>&,

@@ -103,7 +103,7 @@ void Formation::Act(const ControllerInput<T>& in, const Guidance<T>& guidance, T
   }();
   const T z = ring.Height(in, guidance.depth_m);
   const T own_ring = ring.Radius(in, z - (k.p_WB.z + k.r_BT_W.z)) * T(options.radius);
-  const T R = Max(own_ring + guidance.radius_m, T(0.25) * own_ring);
+  const T R = ring.Guided(in, own_ring, guidance.radius_m);
   Level<T> v = Keep(in, v_T, R, guidance);
   const Level<T> own{k.v_WB.x, k.v_WB.y};
   for (int j = 0; j < in.neighbour_count; ++j) {

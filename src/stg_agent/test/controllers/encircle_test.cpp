@@ -71,6 +71,28 @@ TEST(Encircle, CirclesAnticlockwiseAtTheCruiseSpeedAndPointsAtATargetFarOff) {
   EXPECT_GT(Velocity(Sea(), Near({70.0, 0.0, 0.0}, {0.0, 1.0, 0.0}), o).x, 0.3);
 }
 
+TEST(Encircle, TwoCirclesMoveTowardsEachOtherOnly) {
+  AgentModel s = Sea();
+  const Encircle law{EncircleOptions{}};
+  const Knowledge<double> k = Near({90.0, 0.0, 0.0}, {0.0, 1.0, 0.0});
+  const auto radius = [&](int id, double circle, double wider) {
+    return law.Guided(ControllerInput<double>{s, id, k, nullptr, 0}, circle, wider);
+  };
+  EXPECT_EQ(radius(1, 90.0, 10.0), 100.0);
+  EXPECT_EQ(radius(1, 90.0, -10.0), 80.0);
+  EXPECT_EQ(radius(1, 90.0, -80.0), 0.25 * 90.0);
+  s.run.agents = 12;
+  const double inner = law.Radius(ControllerInput<double>{s, 0, k, nullptr, 0}, 0.0);
+  const double outer = law.Radius(ControllerInput<double>{s, 1, k, nullptr, 0}, 0.0);
+  EXPECT_NEAR(inner, 72.0, 1e-9);
+  EXPECT_NEAR(outer, 108.0, 1e-9);
+  EXPECT_EQ(radius(0, 72.0, -10.0), 72.0);
+  EXPECT_EQ(radius(0, 72.0, 10.0), 82.0);
+  EXPECT_EQ(radius(1, 108.0, 10.0), 108.0);
+  EXPECT_EQ(radius(1, 108.0, -10.0), 98.0);
+  EXPECT_EQ(radius(1, 108.0, 200.0), 248.0) << "a lost target is still searched on wide circles";
+}
+
 TEST(Encircle, GroundSpeedStaysBetweenItsLimitsWhateverTheTargetDoes) {
   const AgentModel s = Sea();
   const EncircleOptions o;

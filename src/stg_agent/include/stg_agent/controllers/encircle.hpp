@@ -177,6 +177,10 @@ struct Encircle {
   /// Radius of the circle in the plane [m] at the height difference dz to the target [m].
   template <class T>
   T Radius(const ControllerInput<T>& in, const T& dz) const;
+  /// The same, changed by Guidance::radius_m. Two circles are near the edges of the band already,
+  /// so the first 60 m of a change towards the nearer edge have no effect there.
+  template <class T>
+  T Guided(const ControllerInput<T>& in, const T& circle, const T& wider) const;
   /// Turns a velocity away from another vehicle or an obstacle that it would pass too closely.
   /// @param r, w position and velocity of the other relative to the own position and the ground
   /// @param matters 1; 0: ignore the other
@@ -189,6 +193,7 @@ struct Encircle {
   Level<T> ClearOfChart(const ControllerInput<T>& in, Level<T> v) const;
 
  private:
+  bool TwoCircles(const AgentModel& model) const;
   /// Desired velocity over ground, world axes [m/s].
   template <class T>
   Vec3<T> Velocity(const ControllerInput<T>& in, const Guidance<T>& guidance) const;
