@@ -61,6 +61,15 @@ class Flights(unittest.TestCase):
         found = flight_page.read_table(made, str(self.folder / "out"))
         return {(row["condition"], row["pilot"], row["knows"]): row for row in found}
 
+    def test_the_gap_is_that_of_the_best_law_although_a_policy_is_better(self):
+        place = {"section": "All", "scenario": "field", "condition": "nominal", "variant": ""}
+        rows = [{**place, "pilot": pilot, "knows": knows, "band_share": share}
+                for pilot, knows, share in [("law", "own", 0.8), ("law", "true states", 0.9), ("weak", "own", 0.5),
+                                            ("weak", "true states", 1.0), ("policy", "own", 0.85)]]  # fmt: skip
+        flight_page.close_gaps(rows, {"policy"})
+        for row, closed in zip(rows, [0.0, 1.0, -3.0, 2.0, 0.5]):
+            self.assertAlmostEqual(row["gap_closed"], closed)
+
     def test_the_table_follows_from_the_episodes(self):
         run = self.reproduce()
         self.assertEqual(run.returncode, 0, run.stderr + run.stdout)

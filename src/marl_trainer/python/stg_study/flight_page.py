@@ -46,7 +46,7 @@ def rows_of(study, cells):
         rows.append(row)
     _compare(study, rows, episodes)
     if study.gap_closed:
-        _close_gaps(rows)
+        close_gaps(rows, {name for name, pilot in study.pilots.items() if pilot.is_file()})
     return rows
 
 
@@ -71,14 +71,14 @@ def _compare(study, rows, episodes):
                                paired_interval(episodes[first][0], values[0])))  # fmt: skip
 
 
-def _close_gaps(rows):
+def close_gaps(rows, policies):
     """Sets gap_closed: the position of a row's share in the band between the best law on its own estimates
-    (0) and the same law on true states (1)."""
+    (0) and the same law on true states (1); policies are no laws."""
     for place in {place_of(row) for row in rows}:
         here = [row for row in rows if place_of(row) == place]
         own = {row["pilot"]: row["band_share"] for row in here if row["knows"] == "own"}
         truth = {row["pilot"]: row["band_share"] for row in here if row["knows"] == "true states"}
-        best = max(own, key=own.get, default=None)
+        best = max((name for name in own if name not in policies), key=own.get, default=None)
         gap = truth.get(best, -math.inf) - own.get(best, 0.0)
         for row in here:
             closed = (row["band_share"] - own[best]) / gap if gap >= LEAST_GAP else None
