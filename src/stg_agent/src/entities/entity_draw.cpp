@@ -30,7 +30,13 @@ float DrawCommand(const CommandDistribution& of, Random* random, int* choice, fl
   }
   const float* mean = of.means + static_cast<std::ptrdiff_t>(*choice) * of.size;
   std::copy(mean, mean + of.size, command);
-  return log_density + SampleGaussian(of.log_std, of.size, random, command);
+  if (of.keep <= 0.0F) return log_density + SampleGaussian(of.log_std, of.size, random, command);
+  const float fresh = std::sqrt(1.0F - of.keep * of.keep);
+  for (int k = 0; k < of.size; ++k) {
+    of.noise[k] = of.keep * of.noise[k] + fresh * static_cast<float>(random->Normal());
+    command[k] += std::exp(of.log_std[k]) * of.noise[k];
+  }
+  return log_density + static_cast<float>(GaussianLogDensity(mean, of.log_std, command, of.size));
 }
 
 double LogDensity(const EntityPolicy& policy, const Entities& entities, int choice,
@@ -62,12 +68,8 @@ bool FlyExploring(const EntityPolicy& policy, const AgentView& agent, Random* ra
     of.log_std = policy.parameters().log_std.data();
     of.size = CommandSize(policy.action());
     decision->log_probability = DrawCommand(of, random, &decision->choice, decision->command);
-    TakeCommand(agent, policy.action(), decision->command);
-    if (of.chooses) {
-      TakeChoice(agent, decision->entities, decision->choice);
-    } else {
-      ChooseByLaw(agent);
-    }
+    TakeDecision(agent, decision->entities, policy.action(), of.chooses, decision->choice,
+                 decision->command);
   }
   FollowCommand(agent, policy.action(), out);
   return due;

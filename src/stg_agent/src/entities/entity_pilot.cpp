@@ -101,9 +101,15 @@ void TakeChoice(const AgentView& agent, const Entities& entities, int choice) {
   if (choice < entities.targets) agent.Follow(entities.target_of_row[choice]);
 }
 
-void ChooseByLaw(const AgentView& agent) {
+void TakeDecision(const AgentView& agent, const Entities& entities, EntityAction action,
+                  bool chooses, int choice, const float* command) {
   static const Assign law{AssignOptions{}};
-  law.ChooseWhenDue(agent);
+  TakeCommand(agent, action, command);
+  if (chooses) {
+    TakeChoice(agent, entities, choice);
+  } else {
+    law.ChooseWhenDue(agent);
+  }
 }
 
 void FollowCommand(const AgentView& agent, EntityAction action, float* out) {
@@ -131,12 +137,7 @@ void Fly(const EntityPolicy& policy, const AgentView& agent, float* out) {
     BuildEntities(agent, &entities);
     float command[kCommandNumbers];
     const int choice = policy.Command(entities, command);
-    TakeCommand(agent, policy.action(), command);
-    if (policy.chooses()) {
-      TakeChoice(agent, entities, choice);
-    } else {
-      ChooseByLaw(agent);
-    }
+    TakeDecision(agent, entities, policy.action(), policy.chooses(), choice, command);
   }
   FollowCommand(agent, policy.action(), out);
 }

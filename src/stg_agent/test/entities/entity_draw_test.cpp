@@ -91,6 +91,38 @@ TEST(EntityDraw, LogDensityIsThatOfTheDraw) {
   }
 }
 
+TEST(EntityDraw, CorrelatedNoiseHasTheSameDensityAndItsCorrelation) {
+  const float mean = 0.3F, log_std = -1.0F;
+  float noise = 0.0F;
+  CommandDistribution of;
+  of.means = &mean;
+  of.log_std = &log_std;
+  of.size = 1;
+  of.keep = 0.8F;
+  of.noise = &noise;
+  constexpr int kBefore = 100, kDraws = 100000;
+  double squares = 0.0, products = 0.0, last = 0.0;
+  for (std::uint32_t d = 0; d < kBefore + kDraws; ++d) {
+    Random random(4, Stream::kPolicy, 0, d, 0);
+    int choice = -1;
+    float command = 0.0F;
+    const float log_density = DrawCommand(of, &random, &choice, &command);
+    const double sigma = std::exp(double{log_std}), z = (double{command} - double{mean}) / sigma;
+    EXPECT_NEAR(z, double{noise}, 1e-5);
+    ASSERT_NEAR(log_density, std::log(std::exp(-0.5 * z * z) / (sigma * std::sqrt(2.0 * M_PI))),
+                1e-4);
+    if (d >= kBefore) {
+      squares += z * z / kDraws;
+      products += z * last / kDraws;
+    }
+    last = z;
+  }
+  // Means over an autoregression: five standard deviations, sqrt(2 (1 + k^2) / (1 - k^2) / n).
+  const double spread = 5.0 * std::sqrt(2.0 * (1.0 + 0.64) / (1.0 - 0.64) / kDraws);
+  EXPECT_NEAR(squares, 1.0, spread);
+  EXPECT_NEAR(products, 0.8, spread);
+}
+
 TEST(EntityDraw, TheCommandIsTheOneOfTheLargestLogit) {
   const Entities entities = RowsOfExample();
   for (const auto network : {EntityNetwork::kPool, EntityNetwork::kGraph}) {

@@ -100,6 +100,10 @@ SwarmConfig RecordedSwarmConfig() {
   config.minibatch = 1500;
   config.epochs = 4;
   config.learning_rate = config.last_learning_rate = 2e-4;
+  // Agents explore with white noise.
+  config.last_command = true;
+  config.log_std = -1.0;
+  config.most_log_std = -0.5;
   return config;
 }
 

@@ -28,13 +28,13 @@ constexpr Waters kWaters[] = {
     {nullptr, "sparse", 4},
     {nullptr, "nominal", 4},
     {nullptr, "combined_stress", 6},
-    {"search", "nominal", 6, 1, 2},
+    {"search_evasive", "nominal", 4, 1, 2},
     {nullptr, "nominal", 6, 2},
     {nullptr, "limited_sensing", 5},
     {"hunt", "nominal", 8},
     {nullptr, "degraded_communication", 7},
     {nullptr, "far_initialization", 1},
-    {nullptr, "combined_stress", 2},
+    {nullptr, "sparse", 2},
 };
 /// With free_assignment these replace others: {place above, scenario}.
 constexpr std::pair<int, Waters> kFreeWaters[] = {
@@ -69,6 +69,10 @@ void SwarmConfig::Describe(config::Table* t) {
   t->Add(
       "free-assignment", &free_assignment, config::kNone, "-",
       "with --network graph: a quarter of the waters has two targets, among which the AUVs choose");
+  t->Add("last-command", &last_command, config::kNone, "-",
+         "the policy sees its last command; not useful with --noise-time above 0");
+  t->Add("leaving", &leaving, config::kNone, "-",
+         "in a quarter of the waters one or two AUVs leave, and one of them joins again");
   t->Add("envs", &envs, {8, 4096}, "-", "environments, eight for each kind of waters");
   t->Add("horizon", &horizon, {1, 10000}, "-", "commands of 5 s between two updates");
   t->Add("segment", &segment, {1, 100000}, "-", "updates between two checkpoints");
@@ -92,6 +96,10 @@ void SwarmConfig::Describe(config::Table* t) {
          "log sigma of the exploration at the start, also after --start-from");
   t->Add("min-log-std", &least_log_std, {-20, 2}, "-", "lower bound of log sigma");
   t->Add("max-log-std", &most_log_std, {-20, 2}, "-", "upper bound of log sigma");
+  t->Add("noise-time", &noise_time_s, {0, 1e4}, "s",
+         "correlation time of the exploration; 0: each command has noise of its own");
+  t->Add("average", &average, {1, 1e6}, "-",
+         "number of updates over which the parameters of the written policy are averaged");
   t->Add("entropy", &entropy, {0, 10}, "-",
          "weight of the entropy of the choices of a target, at the start");
   t->Add("last-entropy", &last_entropy, {0, 10}, "-", "weight of this entropy at the end");
@@ -129,6 +137,13 @@ std::vector<SwarmTask> FieldMixture(const std::string& folder, const std::string
         "time.episode_steps=" + steps,
         "time.tail_steps=" + steps,
     };
+    if (config.leaving && k % 4 == 3) {
+      const std::string leave = "[" + std::to_string(config.episode_steps / 3);
+      const std::string join = "[" + std::to_string(2 * config.episode_steps / 3);
+      const std::string second = waters.agents >= 5 ? ", " + leave + ", 1]" : "";
+      overrides.push_back("fleet.leave=[" + leave + ", 0]" + second + "]");
+      overrides.push_back("fleet.join=[" + join + ", 0]]");
+    }
     overrides.insert(overrides.end(), SwarmRewardKeys().begin(), SwarmRewardKeys().end());
     mixture.push_back({name + "/" + waters.condition + "/" + std::to_string(waters.agents),
                        LoadNamedScenario(folder, name, waters.condition, overrides)});
@@ -142,7 +157,7 @@ std::vector<SwarmTask> FieldValidation(const std::string& folder, const std::str
        {"nominal", "combined_stress", "fast_target", "strong_current", "sparse"}) {
     tasks.push_back({condition, LoadNamedScenario(folder, scenario, condition)});
   }
-  for (const char* name : {"hunt", "search"}) {
+  for (const char* name : {"hunt", "search", "search_evasive"}) {
     tasks.push_back({name, LoadNamedScenario(folder, name, "nominal")});
   }
   return tasks;

@@ -12,7 +12,6 @@
 #include "stg_agent/policy/gaussian.hpp"
 
 namespace stg::learn {
-
 SwarmLearner::SwarmLearner(const SwarmConfig& config)
     : config_(config),
       size_(agent::CommandSize(config.action)),
@@ -20,10 +19,13 @@ SwarmLearner::SwarmLearner(const SwarmConfig& config)
       critic_(SwarmCriticSpec()),
       actor_numbers_(actor_.parameters() + static_cast<std::size_t>(size_)),
       critic_numbers_(critic_.parameters()),
+      average_(actor_numbers_.size()),
       actor_adam_(actor_numbers_.size()),
       critic_adam_(critic_numbers_.size()) {
   actor_.Initialise(config.seed, 0, actor_numbers_.data());
-  if (config.without != "nothing") blind_ = Blinded(config.network, size_, config.without);
+  if (config.without != "nothing" || !config.last_command) {
+    blind_ = Blinded(config.network, size_, config.without, config.last_command);
+  }
   KeepBlind(&actor_numbers_);
   InitialisePool(critic_.blocks(), 1.0, config.seed, 1, critic_numbers_.data());
   std::fill(actor_numbers_.end() - size_, actor_numbers_.end(), static_cast<float>(config.log_std));
@@ -80,6 +82,7 @@ void SwarmLearner::Normalise(const std::vector<SwarmRollout>& rollouts) {
   double sum = 0.0, square = 0.0, a = 0.0, aa = 0.0, count = 0.0;
   for (const SwarmRollout& r : rollouts) {
     for (std::size_t k = 0; k < r.returns.size(); ++k) {
+      if (r.absent[k] != 0) continue;
       const auto g = static_cast<double>(r.returns[k]), x = static_cast<double>(r.advantages[k]);
       sum += g;
       square += g * g;
@@ -206,8 +209,9 @@ SwarmLearner::Report SwarmLearner::Update(std::vector<SwarmRollout>* rollouts,
   for (std::size_t r = 0; r < rollouts->size(); ++r) {
     const SwarmRollout& rollout = (*rollouts)[r];
     for (int k = 0; k < rollout.critic.rows(); ++k) {
-      rows.push_back({static_cast<int>(r), k});
       const auto i = static_cast<std::size_t>(k);
+      if (rollout.absent[i] != 0) continue;
+      rows.push_back({static_cast<int>(r), k});
       const auto a = static_cast<double>(rollout.advantages[i]);
       const double g = static_cast<double>(rollout.returns[i]) - mean_;
       reward += static_cast<double>(rollout.own[i]);
@@ -278,6 +282,10 @@ SwarmLearner::Report SwarmLearner::Update(std::vector<SwarmRollout>* rollouts,
     ++epochs;
     if (kl > 1.5 * config_.target_kl) break;
   }
+  averaged_ = std::min(averaged_ + 1.0, config_.average);
+  for (std::size_t k = 0; k < average_.size(); ++k) {
+    average_[k] += static_cast<float>((actor_numbers_[k] - average_[k]) / averaged_);
+  }
   double sigma = 0.0;
   for (auto s = actor_numbers_.end() - size_; s != actor_numbers_.end(); ++s) {
     sigma += std::exp(static_cast<double>(*s)) / size_;
@@ -294,57 +302,6 @@ SwarmLearner::Report SwarmLearner::Update(std::vector<SwarmRollout>* rollouts,
           {"return_mean", mean_},
           {"return_std", std_},
           {"rows", static_cast<double>(count)}};
-}
-
-agent::EntityPolicy SwarmLearner::Policy(const agent::PolicyMetadata& metadata) const {
-  agent::EntityPolicy::Parameters p;
-  p.numbers.assign(actor_numbers_.begin(), actor_numbers_.end() - size_);
-  p.log_std.assign(actor_numbers_.end() - size_, actor_numbers_.end());
-  p.action = config_.action;
-  p.network = config_.network;
-  p.metadata = metadata;
-  return agent::EntityPolicy(std::move(p));
-}
-
-void SwarmLearner::Save(Archive* archive) const {
-  archive->Put("actor", actor_numbers_);
-  archive->Put("critic", critic_numbers_);
-  actor_adam_.Save("actor_adam", archive);
-  critic_adam_.Save("critic_adam", archive);
-  archive->Put("returns", std::vector<double>{mean_, square_, seen_, std_});
-}
-
-void SwarmLearner::StartFrom(const agent::EntityPolicy& policy) {
-  const agent::EntityPolicy::Parameters& p = policy.parameters();
-  if (p.network != config_.network || p.action != config_.action) {
-    throw UserError("policy '" + p.metadata.id + "': has the network '" +
-                    agent::EntityNetworkName(p.network) + "' and the action '" +
-                    agent::EntityActionName(p.action) + "', not '" +
-                    agent::EntityNetworkName(config_.network) + "' and '" +
-                    agent::EntityActionName(config_.action) + "'");
-  }
-  std::copy(p.numbers.begin(), p.numbers.end(), actor_numbers_.begin());
-  std::copy(p.log_std.begin(), p.log_std.end(), actor_numbers_.end() - size_);
-  KeepBlind(&actor_numbers_);
-  without_critic_ = true;
-}
-
-void SwarmLearner::SetDeviation(double log_std) {
-  std::fill(actor_numbers_.end() - size_, actor_numbers_.end(), static_cast<float>(log_std));
-}
-
-void SwarmLearner::Load(const Archive& archive) {
-  const std::vector<float>& actor = archive.Floats("actor", actor_numbers_.size());
-  const std::vector<float>& critic = archive.Floats("critic", critic_numbers_.size());
-  const std::vector<double>& returns = archive.Doubles("returns", 4);
-  actor_adam_.Load("actor_adam", archive);
-  critic_adam_.Load("critic_adam", archive);
-  actor_numbers_ = actor;
-  critic_numbers_ = critic;
-  mean_ = returns[0];
-  square_ = returns[1];
-  seen_ = returns[2];
-  std_ = returns[3];
 }
 
 }  // namespace stg::learn

@@ -137,6 +137,7 @@ SwarmRollout RolloutOf(const SwarmConfig& config, const task::JudgeConfig& scena
       out.commands.insert(out.commands.end(), d.command, d.command + commands[i].command_size);
       out.choices.push_back(d.choice);
       out.log_prob.push_back(d.log_probability);
+      out.absent.push_back(0);
       out.done.push_back(last ? 1 : 0);
       out.final_of.push_back(last ? i : -1);
       out.own.push_back(sums[static_cast<std::size_t>(i)] / static_cast<float>(period));
@@ -146,6 +147,7 @@ SwarmRollout RolloutOf(const SwarmConfig& config, const task::JudgeConfig& scena
     }
     out.rewards.resize(out.rewards.size() + agents);
     reward.Share(out.own.data() + out.own.size() - agents,
+                 out.absent.data() + out.absent.size() - agents,
                  potentials(episode.moments[first]).data(), potentials(end).data(),
                  out.rewards.data() + out.rewards.size() - agents);
   }

@@ -34,7 +34,7 @@ void SwarmReward::Add(const Outcome* outcomes, float* sums) const {
   std::vector<int> inside(static_cast<std::size_t>(targets_count_));
   const auto is_inside = [&](int i) {
     const double distance = outcomes[i].distance_m;
-    return distance >= band_m_.lo && distance <= band_m_.hi;
+    return outcomes[i].present && distance >= band_m_.lo && distance <= band_m_.hi;
   };
   for (int i = 0; i < agents_; ++i) {
     if (is_inside(i)) ++inside[static_cast<std::size_t>(outcomes[i].followed)];
@@ -54,13 +54,13 @@ double SwarmReward::Potential(const Outcome& outcome) const {
 
 bool SwarmReward::SameTeam(int i, int j) const { return free_ || targets_.of(j) == targets_.of(i); }
 
-void SwarmReward::Share(const float* own, const float* before, const float* after,
-                        float* rewards) const {
+void SwarmReward::Share(const float* own, const std::uint8_t* absent, const float* before,
+                        const float* after, float* rewards) const {
   for (int i = 0; i < agents_; ++i) {
     float sum = 0.0F;
     int mates = 0;
     for (int j = 0; j < agents_; ++j) {
-      if (!SameTeam(i, j)) continue;
+      if (j != i && (absent[j] != 0 || !SameTeam(i, j))) continue;
       sum += own[j];
       ++mates;
     }

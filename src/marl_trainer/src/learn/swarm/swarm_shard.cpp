@@ -62,15 +62,19 @@ SwarmShard::SwarmShard(const env::EnvFactory& make_env, const SwarmConfig& confi
   potential_.resize(rows);
   next_potential_.resize(rows);
   outcomes_.resize(static_cast<std::size_t>(env_.agents()));
+  noise_.resize(rows * agent::kCommandNumbers);
   RestartAt(0);
 }
 
-void SwarmShard::RestartAt(std::uint64_t k) { env_.RestartAt(k, memory_.arrays()); }
+void SwarmShard::RestartAt(std::uint64_t k) {
+  env_.RestartAt(k, memory_.arrays());
+  fresh_ = true;
+}
 
 Outcome SwarmShard::OutcomeOf(int e, int i) const {
   const task::Tracking<double> t = env_.tracking(e, i);
   return {memory_.rewards[static_cast<std::size_t>(e * env_.agents() + i)], t.distance, t.error,
-          env_.followed(e, i)};
+          env_.followed(e, i), env_.present(e, i)};
 }
 
 float SwarmShard::Potential(int e, int i) const {
@@ -87,6 +91,7 @@ void SwarmShard::Observe(const SwarmActor& actor, std::uint32_t collection, int 
       agent::Entities& entities = entities_[static_cast<std::size_t>(e * n + i)];
       agent::BuildEntities(env_.agent(e, i), &entities);
       now_.Add(agent::EntityGraphRows(entities));
+      out->absent.push_back(env_.present(e, i) ? 0 : 1);
       AddCriticRow(truth_, i, entities, &out->critic);
     }
   }
@@ -97,7 +102,6 @@ void SwarmShard::Observe(const SwarmActor& actor, std::uint32_t collection, int 
                      static_cast<std::uint32_t>(row % n);
     Random random(TrainingSeed(config_.seed), Stream::kPolicy, collection,
                   static_cast<std::uint32_t>(step), key);
-    const agent::AgentView view = env_.agent(row / n, row % n);
     const int first = workspace_.first[static_cast<std::size_t>(row)];
     agent::CommandDistribution of;
     of.chooses = actor.network.chooses();
@@ -106,18 +110,22 @@ void SwarmShard::Observe(const SwarmActor& actor, std::uint32_t collection, int 
     of.means = workspace_.means.data() + static_cast<std::ptrdiff_t>(first) * size;
     of.log_std = actor.log_std;
     of.size = size;
+    of.noise = noise_.data() + static_cast<std::ptrdiff_t>(row) * agent::kCommandNumbers;
+    if (config_.noise_time_s > 0.0) {
+      if (fresh_) {
+        for (int k = 0; k < size; ++k) of.noise[k] = static_cast<float>(random.Normal());
+      }
+      of.keep = static_cast<float>(std::exp(-agent::kCommandPeriod_s / config_.noise_time_s));
+    }
     int choice = 0;
     float command[agent::kCommandNumbers];
     out->log_prob.push_back(agent::DrawCommand(of, &random, &choice, command));
     out->commands.insert(out->commands.end(), command, command + size);
     out->choices.push_back(choice);
-    agent::TakeCommand(view, config_.action, command);
-    if (actor.network.chooses()) {
-      agent::TakeChoice(view, entities_[static_cast<std::size_t>(row)], choice);
-    } else {
-      agent::ChooseByLaw(view);
-    }
+    agent::TakeDecision(env_.agent(row / n, row % n), entities_[static_cast<std::size_t>(row)],
+                        config_.action, of.chooses, choice, command);
   }
+  fresh_ = false;
 }
 
 void SwarmShard::FlyOn(int step, SwarmRollout* out) {
@@ -157,10 +165,12 @@ void SwarmShard::FlyOn(int step, SwarmRollout* out) {
     if (ended) out->finished.push_back(env_.metrics(e));
     for (int i = 0; i < n; ++i) {
       const auto row = static_cast<std::size_t>(e * n + i);
-      out->done.push_back(ended ? 1 : 0);
-      out->final_of.push_back(ended ? out->finals.rows() : -1);
-      if (ended) out->finals.Add(last_, static_cast<int>(row));
-      if (!ended) next_potential_[row] = Potential(e, i);
+      const bool was_here = out->absent[out->done.size()] == 0;
+      const bool ends = ended || (was_here && !env_.present(e, i));
+      out->done.push_back(ends ? 1 : 0);
+      out->final_of.push_back(ends ? out->finals.rows() : -1);
+      if (ends) out->finals.Add(last_, static_cast<int>(row));
+      if (!ends) next_potential_[row] = Potential(e, i);
       out->own.push_back(sums_[row] / static_cast<float>(period));
     }
   }
@@ -177,12 +187,14 @@ void SwarmShard::Pay() {
 
 void SwarmShard::Reward(int step, SwarmRollout* out) const {
   const int n = env_.agents();
-  const float* own = out->own.data() + static_cast<std::ptrdiff_t>(step) * env_.envs() * n;
+  const std::ptrdiff_t begin = static_cast<std::ptrdiff_t>(step) * env_.envs() * n;
+  const float* own = out->own.data() + begin;
+  const std::uint8_t* absent = out->absent.data() + begin;
   for (int e = 0; e < env_.envs(); ++e) {
     const std::ptrdiff_t first = e * n;
     out->rewards.resize(out->rewards.size() + static_cast<std::size_t>(n));
-    reward_.Share(own + first, potential_.data() + first, next_potential_.data() + first,
-                  out->rewards.data() + out->rewards.size() - n);
+    reward_.Share(own + first, absent + first, potential_.data() + first,
+                  next_potential_.data() + first, out->rewards.data() + out->rewards.size() - n);
   }
 }
 

@@ -63,6 +63,7 @@ SwarmTrainer::SwarmTrainer(std::vector<SwarmTask> mixture, std::vector<SwarmTask
     WriteDurably(ConfigText(), options.out + "/config.json", "the configuration");
     if (!options.start_from.empty()) {
       learner_.Load(ReadArchive(options.start_from + "/checkpoint.ckpt").Part("learner"));
+      learner_.RequireBlind(options.start_from);
       learner_.SetDeviation(config.log_std);
     }
   }
@@ -134,7 +135,7 @@ void SwarmTrainer::Segment() {
 }
 
 void SwarmTrainer::Validate() {
-  const agent::EntityPolicy policy = learner_.Policy(Metadata());
+  const agent::EntityPolicy policy = learner_.AveragePolicy(Metadata());
   const env::ActFactory factory = [&policy](const env::VectorEnv&, int) -> env::ActFunction {
     return [&policy](const env::VectorEnv& env, const float*, double* actions) {
       float action[dynamics::kMaxActionSize];
@@ -168,10 +169,10 @@ void SwarmTrainer::Validate() {
     if (options_.log != nullptr) *options_.log << "validation " << line << std::endl;
   }
   last_ = sum;
-  learner_.Policy(Metadata()).SaveOnnx(options_.out + "/policy_last.onnx");
+  learner_.AveragePolicy(Metadata()).SaveOnnx(options_.out + "/policy_last.onnx");
   if (sum > best_) {
     best_ = sum;
-    learner_.Policy(Metadata()).SaveOnnx(options_.out + "/policy_best.onnx");
+    learner_.AveragePolicy(Metadata()).SaveOnnx(options_.out + "/policy_best.onnx");
   }
 }
 

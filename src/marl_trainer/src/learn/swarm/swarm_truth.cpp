@@ -35,6 +35,7 @@ void ReadTruth(const env::VectorEnv& env, int e, SwarmTruth* truth) {
   truth->desired_m = s.agent.task.desired_distance_m;
   truth->p_WB.clear();
   truth->v_WB.clear();
+  truth->present.clear();
   truth->targets.clear();
   truth->followed.clear();
   truth->r_BT_W.clear();
@@ -43,6 +44,7 @@ void ReadTruth(const env::VectorEnv& env, int e, SwarmTruth* truth) {
     const dynamics::VehicleState<double> vehicle = env.vehicle(e, i);
     truth->p_WB.push_back(vehicle.p_WB);
     truth->v_WB.push_back(vehicle.v_WB);
+    truth->present.push_back(env.present(e, i) ? 1 : 0);
     truth->followed.push_back(env.followed(e, i));
     truth->r_BT_W.push_back(env.knowledge(e, i).r_BT_W);
   }
@@ -91,7 +93,7 @@ void AddCriticRow(const SwarmTruth& truth, int i, const agent::Entities& entitie
   float others[64][kCriticOther];
   int count = 0;
   for (std::size_t j = 0; j < truth.p_WB.size() && count < 64; ++j) {
-    if (j == u) continue;
+    if (j == u || truth.present[j] == 0) continue;
     const Vec3<double> d = truth.p_WB[j] - p_WB, w = truth.v_WB[j] - v_WB, q = d - r;
     const double flat = std::max(std::hypot(d.x, d.y), 1e-6), apart = Norm(d), far = Norm(q);
     const double both = std::max(std::hypot(q.x, q.y) * level, 1e-9);

@@ -140,6 +140,7 @@ learn::SwarmMoment SwarmInlet::MomentOf(const SwarmFrame& frame) {
     const auv_msgs::TaskState& task = *frame.tasks[i];
     t.p_WB.push_back(VectorOf(frame.truth->poses[i].position));
     t.v_WB.push_back(VectorOf(frame.truth->velocities[i]));
+    t.present.push_back(1);  // RequireRecordable: all AUVs, all the time
     t.followed.push_back(static_cast<int>(task.target));
     t.r_BT_W.push_back(VectorOf(task.target_offset));
     const task::Tracking<double>& tracking = judge_.tracking(static_cast<int>(i));

@@ -74,6 +74,7 @@ TEST_F(SwarmRecording, ARecordedFlightGivesTheRolloutAndTheUpdateOfTheCollector)
     config_.network = network;
     config_.horizon = kFlightCommands;
     config_.episode_steps = kFlightSteps;
+    config_.noise_time_s = 0.0;  // as agents explore
     const std::string name = agent::EntityNetworkName(network);
     const auto trainer = Trainer(name);
     SwarmLearner learner(config_);

@@ -62,6 +62,23 @@ class SwarmTraining : public ::testing::Test {
     return agent::EntityPolicy::LoadOnnx(folder_ / name / "policy_last.onnx");
   }
 
+  /// A column of the training's progress.
+  std::vector<double> Column(const std::string& name, const std::string& column) const {
+    std::istringstream table(TextIn(folder_ / name / "progress.csv"));
+    std::string line, cell;
+    std::getline(table, line);
+    int before = 0;
+    std::istringstream header(line);
+    while (std::getline(header, cell, ',') && cell != column) ++before;
+    std::vector<double> numbers;
+    while (std::getline(table, line)) {
+      std::istringstream cells(line);
+      for (int k = 0; k <= before; ++k) std::getline(cells, cell, ',');
+      numbers.push_back(std::stod(cell));
+    }
+    return numbers;
+  }
+
   fs::path folder_;
   SwarmConfig config_;
 };
@@ -121,7 +138,7 @@ TEST_F(SwarmTraining, WhatAnAblationHidesChangesNoCommand) {
       EXPECT_EQ(most < 1e-6F, without != "nothing") << name << " " << most;  // means are rounded
     }
   }
-  EXPECT_THROW(Blinded(config_.network, 5, "nonsense"), UserError);
+  EXPECT_THROW(Blinded(config_.network, 5, "nonsense", false), UserError);
 }
 
 TEST_F(SwarmTraining, TargetsAreChosenInSomeWatersByTheNetworkThatChooses) {
@@ -147,6 +164,72 @@ TEST_F(SwarmTraining, TargetsAreChosenInSomeWatersByTheNetworkThatChooses) {
   EXPECT_EQ(ShareCovered({1, 2, 3}), 2.5 / 3.0);
 }
 
+TEST_F(SwarmTraining, ThePolicyIsTheMeanOverTheLastUpdates) {
+  config_.average = 1.0;
+  config_.steps = 320;
+  ASSERT_TRUE(Train("first", 1, false));
+  config_.steps = 2 * 320;
+  config_.last_learning_rate = config_.learning_rate;
+  ASSERT_TRUE(Train("second", 1, false));
+  config_.average = 2.0;
+  ASSERT_TRUE(Train("mean", 1, false));
+  const std::vector<float> first = Last("first").parameters().numbers,
+                           second = Last("second").parameters().numbers,
+                           mean = Last("mean").parameters().numbers;
+  EXPECT_NE(first, second);
+  for (std::size_t k = 0; k < mean.size(); ++k) {
+    EXPECT_NEAR(mean[k], 0.5F * (first[k] + second[k]), 1e-6F);
+  }
+}
+
+TEST_F(SwarmTraining, NothingIsLearntFromAnAuvThatHasLeft) {
+  config_.steps = 2 * 320;
+  SwarmTrainer::Options options;
+  options.out = (folder_ / "run").string();
+  options.workers = 1;
+  const auto waters = [](int agents) {
+    return SwarmTask{std::to_string(agents),
+                     LoadNamedScenario(config::ScenarioFolder(), "field", "nominal",
+                                       {"agents=" + std::to_string(agents), "time.episode_steps=60",
+                                        "time.tail_steps=60", "fleet.leave=[[20, 0]]"})};
+  };
+  ASSERT_TRUE(SwarmTrainer({waters(3), waters(5)}, {Waters(4)}, config_, options).Run());
+  const std::vector<double> rows = Column("run", "rows");
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0], 8 * 4 * (3 + 5));
+  // The first episodes last 15, 30, 45 and 60 s, in four environments each. In the second
+  // collection, from 20 s on, AUV 0 is away during 1, 2, 4 and 4 of the four commands.
+  EXPECT_EQ(rows[1], 8 * 4 * (3 + 5) - 4 * (1 + 2 + 4 + 4));
+}
+
+TEST_F(SwarmTraining, AuvsLeaveAndJoinInAQuarterOfTheWaters) {
+  int changing = 0;
+  for (const SwarmTask& task : FieldMixture(config::ScenarioFolder(), "field", config_, 16)) {
+    changing += task.scenario.agent.fleet.changes() ? 1 : 0;
+  }
+  EXPECT_EQ(changing, 4);
+  config_.leaving = false;
+  for (const SwarmTask& task : FieldMixture(config::ScenarioFolder(), "field", config_, 16)) {
+    EXPECT_FALSE(task.scenario.agent.fleet.changes()) << task.name;
+  }
+}
+
+TEST_F(SwarmTraining, RefusesToStartFromAPolicyThatSeesMore) {
+  config_.steps = 320;
+  config_.last_command = true;
+  ASSERT_TRUE(Train("sees", 1, false));
+  SwarmTrainer::Options options;
+  options.workers = 1;
+  options.start_from = (folder_ / "sees").string();
+  const auto start = [&](const std::string& name) {
+    options.out = (folder_ / name).string();
+    SwarmTrainer({Waters(3), Waters(5)}, {Waters(4)}, config_, options);
+  };
+  EXPECT_NO_THROW(start("all"));
+  config_.last_command = false;
+  EXPECT_THROW(start("less"), UserError);
+}
+
 TEST_F(SwarmTraining, RefusesAFolderOfAnotherTraining) {
   config_.steps = 320;
   ASSERT_TRUE(Train("run", 1, false));
@@ -162,18 +245,7 @@ TEST_F(SwarmTraining, TheCriticLearnsToExplainReturns) {
   config_.epochs = 6;
   config_.steps = 10 * 960;
   ASSERT_TRUE(Train("run", 2, false));
-  std::istringstream table(TextIn(folder_ / "run/progress.csv"));
-  std::string line, cell;
-  std::getline(table, line);
-  int column = 0;
-  std::istringstream header(line);
-  while (std::getline(header, cell, ',') && cell != "explained_variance") ++column;
-  std::vector<double> explained;
-  while (std::getline(table, line)) {
-    std::istringstream cells(line);
-    for (int k = 0; k <= column; ++k) std::getline(cells, cell, ',');
-    explained.push_back(std::stod(cell));
-  }
+  const std::vector<double> explained = Column("run", "explained_variance");
   ASSERT_EQ(explained.size(), 10u);
   EXPECT_GT(explained.back(), explained.front() + 0.5);
 }

@@ -22,6 +22,10 @@ struct CommandDistribution {
   const float* means = nullptr;    ///< [choices, size]
   const float* log_std = nullptr;  ///< [size]
   int size = kCommandNumbers;
+  /// Correlation of the noise with that of the last command, from 0 to 1; above 0 `noise` is read
+  /// and written: [size], of deviation 1. Each command alone has the density above.
+  float keep = 0.0F;
+  float* noise = nullptr;
 };
 
 /// Draws a choice and a command. @param command [size], before any clipping

@@ -25,9 +25,10 @@ void TakeCommand(const AgentView& agent, EntityAction action, const float* comma
 /// Stores a policy's choice for the same time: the row of a target, which the AUV follows from the
 /// next decision on; or the number of rows, which means to search if there is a map.
 void TakeChoice(const AgentView& agent, const Entities& entities, int choice);
-/// The choice for a policy without choices (network `pool`): where an AUV may choose a target, the
-/// law `assign` does.
-void ChooseByLaw(const AgentView& agent);
+/// Stores a command and the choice that belongs to it. For a policy that does not choose (network
+/// `pool`), the law `assign` chooses the target where an AUV may choose one.
+void TakeDecision(const AgentView& agent, const Entities& entities, EntityAction action,
+                  bool chooses, int choice, const float* command);
 /// The scenario's action at this decision for the last command, rounded to float.
 /// @param out [action_size]
 void FollowCommand(const AgentView& agent, EntityAction action, float* out);

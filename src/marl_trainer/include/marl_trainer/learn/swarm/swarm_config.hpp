@@ -14,11 +14,15 @@ namespace stg::learn {
 /// command and lasts 5 s.
 struct SwarmConfig {
   std::uint64_t seed = 0;
-  std::int64_t steps = 6'000'000;  ///< decisions of a swarm; each lasts 1 s in the field
+  std::int64_t steps = 2'048'000;  ///< decisions of a swarm; each lasts 1 s in the field
   agent::EntityAction action = agent::EntityAction::kLaw5;
   agent::EntityNetwork network = agent::EntityNetwork::kPool;
   std::string without = "nothing";  ///< input that the actor cannot use (Blinded)
-  bool free_assignment = false;     ///< some scenarios have targets that the AUVs choose freely
+  /// The actor sees its last command. Correlated noise is in that command, so an actor that sees it
+  /// learns to correct the noise, which a deterministic policy does not have.
+  bool last_command = false;
+  bool free_assignment = false;  ///< some scenarios have targets that the AUVs choose freely
+  bool leaving = true;           ///< in some scenarios AUVs leave and join
 
   int envs = 128;
   int horizon = 40;         ///< policy steps of one collection
@@ -37,7 +41,9 @@ struct SwarmConfig {
   int minibatch = 7000;  ///< in rows of AUVs
   double learning_rate = 5e-4, last_learning_rate = 5e-5;
   double clip = 0.2, target_kl = 0.02, gradient_norm = 0.5, adam_eps = 1e-5;
-  double log_std = -1.0, least_log_std = -3.0, most_log_std = -0.5;
+  double log_std = -2.0, least_log_std = -3.0, most_log_std = -1.5;
+  double noise_time_s = 60.0;  ///< correlation time of the exploration; 0: white noise
+  double average = 20.0;       ///< updates over which the policy's parameters are averaged
   double entropy = 0.01, last_entropy = 0.001;  ///< weight of the entropy of the choices
   double value_memory = 500'000;  ///< number of rows that the moments of the returns remember
 

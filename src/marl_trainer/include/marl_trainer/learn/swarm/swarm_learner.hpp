@@ -30,7 +30,9 @@ class SwarmLearner {
   Report Update(std::vector<SwarmRollout>* rollouts, std::uint32_t collection, double progress,
                 WorkerPool* pool, Learns learns = Learns::kBoth);
 
+  /// The policy as it is, and its mean over the last updates (SwarmConfig::average).
   agent::EntityPolicy Policy(const agent::PolicyMetadata& metadata) const;
+  agent::EntityPolicy AveragePolicy(const agent::PolicyMetadata& metadata) const;
   void Save(Archive* archive) const;
   /// Throws UserError for an archive with other sizes.
   void Load(const Archive& archive);
@@ -39,6 +41,8 @@ class SwarmLearner {
   void StartFrom(const agent::EntityPolicy& policy);
   /// Sets the log standard deviation of the exploration.
   void SetDeviation(double log_std);
+  /// Throws UserError if the actor uses an input that it may not see. @param start where it is from
+  void RequireBlind(const std::string& start) const;
 
  private:
   static constexpr int kSlices = 8;
@@ -57,6 +61,8 @@ class SwarmLearner {
   void Advantages(SwarmRollout* rollout, const std::vector<float>& finals,
                   const std::vector<float>& next) const;
   void Normalise(const std::vector<SwarmRollout>& rollouts);
+  agent::EntityPolicy PolicyOf(const std::vector<float>& numbers,
+                               const agent::PolicyMetadata& metadata) const;
   void Gradient(const std::vector<SwarmRollout>& rollouts, const std::vector<Row>& rows,
                 std::size_t begin, std::size_t end, std::size_t batch, double entropy,
                 Part* part) const;
@@ -72,6 +78,8 @@ class SwarmLearner {
   std::vector<bool> blind_;  // parameters of the actor that stay at 0, or empty
   // The actor's numbers include its log deviations.
   std::vector<float> actor_numbers_, critic_numbers_;
+  std::vector<float> average_;  // of actor_numbers_
+  double averaged_ = 0.0;       // number of updates in average_
   AdamState actor_adam_, critic_adam_;
   double mean_ = 0.0, square_ = 1.0, seen_ = 0.0;  // moments of the returns
   double std_ = 1.0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,7 @@ struct Outcome {
   double distance_m = 0.0;  ///< true distance to its target
   double error_m = 0.0;     ///< |distance - desired distance|
   int followed = 0;         ///< the target that it follows
+  bool present = true;      ///< false: it has left the swarm
 };
 
 /// The reward of learning with swarms, for environments and for recordings. Arrays have one entry
@@ -35,8 +37,10 @@ class SwarmReward {
   double Potential(const Outcome& outcome) const;
   /// The reward of a command: the own mean reward, the mean of the team, and the shaping.
   /// @param own mean of Add over the decisions of the command
+  /// @param absent 1: the AUV had left, and is not part of the team
   /// @param before, after potentials at its begin and at its end
-  void Share(const float* own, const float* before, const float* after, float* rewards) const;
+  void Share(const float* own, const std::uint8_t* absent, const float* before, const float* after,
+             float* rewards) const;
 
  private:
   bool SameTeam(int i, int j) const;

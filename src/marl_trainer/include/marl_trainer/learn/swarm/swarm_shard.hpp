@@ -23,9 +23,11 @@ struct SwarmRollout {
   std::vector<float> log_prob;  // [rows]
   // [rows]: the AUV's own mean reward; the reward that it learns from.
   std::vector<float> own, rewards;
-  std::vector<std::uint8_t> done;  // [rows], 1: the episode ended with this step
-  PackedRows finals;               // critic's rows of the states at the end of an episode
-  std::vector<int> final_of;       // [rows], index in finals; -1: the episode went on
+  // [rows], 1: nothing is learnt from this row, because the AUV had left the swarm.
+  std::vector<std::uint8_t> absent;
+  std::vector<std::uint8_t> done;  // [rows], 1: the episode ended with this step, or the AUV left
+  PackedRows finals;               // critic's rows of the states before such an end
+  std::vector<int> final_of;       // [rows], index in finals; -1: it went on
   PackedRows next;                 // critic's rows of the state after the last step
   std::vector<float> values, advantages, returns;  // [rows], written by the learner
   std::vector<task::EpisodeMetrics> finished;      // episodes that ended
@@ -67,6 +69,8 @@ class SwarmShard {
   env::EnvMemory memory_;
   std::vector<agent::Entities> entities_;  // [envs, agents]
   std::vector<float> actions_, sums_, potential_, next_potential_;
+  std::vector<float> noise_;  // [envs, agents, kCommandNumbers], of the exploration
+  bool fresh_ = true;         // the noise begins anew
   PackedRows now_, last_;
   ActorWorkspace workspace_;
   SwarmTruth truth_;

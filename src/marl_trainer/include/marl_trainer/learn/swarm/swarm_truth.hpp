@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "marl_trainer/learn/swarm/network/pool_batch.hpp"
@@ -25,8 +26,9 @@ struct SwarmTruth {
   double desired_m = 0.0;                ///< desired distance to a target
   std::vector<Vec3<double>> p_WB, v_WB;  ///< [agents]
   std::vector<dynamics::TargetState<double>> targets;
-  std::vector<int> followed;         ///< [agents], the target that the AUV follows
-  std::vector<Vec3<double>> r_BT_W;  ///< [agents], estimated vector from the AUV to its target
+  std::vector<std::uint8_t> present;  ///< [agents], 0: the AUV has left the swarm
+  std::vector<int> followed;          ///< [agents], the target that the AUV follows
+  std::vector<Vec3<double>> r_BT_W;   ///< [agents], estimated vector from the AUV to its target
 };
 
 /// The same of an environment at present.

@@ -85,6 +85,10 @@ void NoSearch(const Seen& s, Marks* marks) {
   marks->Columns(*s.trunk, s.search, s.search + agent::kSearchNumbers - 1);
 }
 
+void NoCommand(const Seen& s, Marks* marks) {
+  marks->Columns(*s.self, agent::kSelfCommand, agent::kSelfCommand + agent::kCommandNumbers - 1);
+}
+
 void Nothing(const Seen&, Marks*) {}
 
 constexpr struct {
@@ -102,7 +106,8 @@ std::vector<std::string> BlindNames() {
   return names;
 }
 
-std::vector<bool> Blinded(agent::EntityNetwork network, int outputs, const std::string& without) {
+std::vector<bool> Blinded(agent::EntityNetwork network, int outputs, const std::string& without,
+                          bool last_command) {
   const auto* found = std::find_if(std::begin(kBlind), std::end(kBlind),
                                    [&without](const auto& b) { return without == b.name; });
   if (found == std::end(kBlind)) {
@@ -112,10 +117,12 @@ std::vector<bool> Blinded(agent::EntityNetwork network, int outputs, const std::
   if (network == agent::EntityNetwork::kGraph) {
     const agent::GraphSpec spec = agent::EntityGraphSpec(outputs);
     const agent::GraphBlocks b(spec);
-    found->blind(
-        {&b.self.weight, &b.sets[0].first.weight, &b.sets[1].first.weight, &b.sets[1],
-         &b.trunk1.weight, &b.edge_row, &b.edge_neighbour, &b.edge_nobody, &b.prior, spec.hidden},
-        &marks);
+    const Seen seen{&b.self.weight,    &b.sets[0].first.weight, &b.sets[1].first.weight,
+                    &b.sets[1],        &b.trunk1.weight,        &b.edge_row,
+                    &b.edge_neighbour, &b.edge_nobody,          &b.prior,
+                    spec.hidden};
+    found->blind(seen, &marks);
+    if (!last_command) NoCommand(seen, &marks);
   } else {
     const agent::PoolSpec spec = agent::EntityActorSpec(outputs);
     const agent::PoolBlocks b(spec);
@@ -123,6 +130,7 @@ std::vector<bool> Blinded(agent::EntityNetwork network, int outputs, const std::
               &b.trunk1.weight};
     seen.search = spec.hidden;
     found->blind(seen, &marks);
+    if (!last_command) NoCommand(seen, &marks);
   }
   return marks.take();
 }
