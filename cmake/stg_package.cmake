@@ -7,12 +7,12 @@ include(${CMAKE_CURRENT_LIST_DIR}/stg_flags.cmake)
 # state it.
 file(STRINGS ${CMAKE_CURRENT_LIST_DIR}/../VERSION STG_VERSION)
 
-option(STG_UNITY "Compile twelve sources of a target at a time, which halves the time of a build" ON)
+option(STG_UNITY "Compile sixteen sources of a target at a time, which halves the time of a build" ON)
 
 # stg_unity(TARGET): compiles several sources as one. So the names in their anonymous namespaces must
 # differ.
 function(stg_unity target)
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ${STG_UNITY} UNITY_BUILD_BATCH_SIZE 12)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${STG_UNITY} UNITY_BUILD_BATCH_SIZE 16)
 endfunction()
 
 # stg_optimise(TARGET OPTION): compiles with -O1 or -O2 instead of -O3, where the time of the build
@@ -74,7 +74,7 @@ endfunction()
 # stg_core_tool(TARGET NAME): sets up a command-line program of a core and calls it NAME.
 function(stg_core_tool target name)
   set_target_properties(${target} PROPERTIES OUTPUT_NAME ${name})
-  stg_optimise(${target} -O2)
+  stg_optimise(${target} -O1)
 endfunction()
 
 # stg_test(TARGET SOURCES FILE ... LIBRARIES LIBRARY ... [DEFINITIONS DEFINITION ...]
