@@ -18,7 +18,7 @@ LAUNCH = pathlib.Path(rospkg.RosPack().get_path("stg_bringup")) / "launch"
 def launch_files():
     """Returns all launch files for users, as roslaunch sees them."""
     found = sorted(LAUNCH.glob("*.launch"))
-    assert {"hard.launch", "medium.launch"} <= {path.name for path in found}, found
+    assert {"field.launch", "medium.launch"} <= {path.name for path in found}, found
     alone = pathlib.Path(rospkg.RosPack().get_path("acoustic_channel")) / "launch"
     return [*found, *sorted(alone.glob("*.launch"))]
 
