@@ -36,6 +36,10 @@ bool Encircle::TwoCircles(const AgentModel& s) const {
   return team > options.ring_team;
 }
 
+double Encircle::Dodge(const AgentModel& s) const {
+  return TwoCircles(s) ? options.ring_dodge : options.dodge;
+}
+
 template <class T>
 T Encircle::Height(const ControllerInput<T>& in, const T& deeper_m) const {
   const T target = in.knowledge.p_WB.z + in.knowledge.r_BT_W.z;
@@ -67,7 +71,7 @@ T Encircle::Guided(const ControllerInput<T>& in, const T& circle, const T& wider
 
 template <class T>
 Level<T> Encircle::Miss(const Level<T>& v, const Level<T>& r, const Level<T>& w, const T& clearance,
-                        const T& matters) const {
+                        double dodge, const T& matters) const {
   const T zero(0.0), one(1.0);
   const Level<T> closing = w - v;
   const T time =
@@ -82,7 +86,7 @@ Level<T> Encircle::Miss(const Level<T>& v, const Level<T>& r, const Level<T>& w,
   const T side = Select(Dot(miss, starboard) > T(0.5), -one, one);
   const Level<T> away = r * (-distance / (range * clearance));
   const T speed = Norm(v);
-  return (starboard * side + away) * (T(options.dodge) * strength * speed);
+  return (starboard * side + away) * (T(dodge) * strength * speed);
 }
 
 template <class T>
@@ -142,6 +146,7 @@ Vec3<T> Encircle::Velocity(const ControllerInput<T>& in, const Guidance<T>& guid
   T ahead(kTwoPi), behind(kTwoPi);
   Level<T> aside;
   const bool rings = TwoCircles(s);
+  const double dodge = Dodge(s);
   const T reach = rings ? T(o.ring * d) : T(o.mate_on_circle * d);
   for (int j = 0; j < in.neighbour_count; ++j) {
     const NeighbourSight<T>& n = in.neighbours[j];
@@ -153,7 +158,7 @@ Vec3<T> Encircle::Velocity(const ControllerInput<T>& in, const Guidance<T>& guid
     const auto beside = Abs(c.z - k.p_WB.z) < T(o.layer_m);
     const T clearance =
         Select(with_us, T(o.mate_clearance_m), T(o.clearance_m) + n.age_s * T(o.doubt_mps));
-    aside = aside + Miss(own, c.q + now, c.w, clearance, Select(beside, one, zero));
+    aside = aside + Miss(own, c.q + now, c.w, clearance, dodge, Select(beside, one, zero));
   }
   const T early = (ahead - behind) * T(0.5 * o.spread_gain) * guidance.sense;
   const T spread =
@@ -189,9 +194,10 @@ template double Encircle::Guided(const ControllerInput<double>&, const double&,
                                  const double&) const;
 template Pack Encircle::Guided(const ControllerInput<Pack>&, const Pack&, const Pack&) const;
 template Level<double> Encircle::Miss(const Level<double>&, const Level<double>&,
-                                      const Level<double>&, const double&, const double&) const;
+                                      const Level<double>&, const double&, double,
+                                      const double&) const;
 template Level<Pack> Encircle::Miss(const Level<Pack>&, const Level<Pack>&, const Level<Pack>&,
-                                    const Pack&, const Pack&) const;
+                                    const Pack&, double, const Pack&) const;
 
 void Describe(EncircleOptions* o, config::Table* t) {
   t->Add("cruise", &o->cruise_mps, NonNegative(100), "m/s",
@@ -227,6 +233,7 @@ void Describe(EncircleOptions* o, config::Table* t) {
          "smallest radius of the circle far above or below the target, as a share of d*");
   t->Add("dodge", &o->dodge, NonNegative(100), "-",
          "largest sideways speed to avoid an AUV, as a share of the AUV's own speed");
+  t->Add("ring-dodge", &o->ring_dodge, NonNegative(100), "-", "the same share in large teams");
   t->Add("on-circle", &o->on_circle, NonNegative(10), "-",
          "the AUV is on the circle when it is closer to it than this share of d*");
   t->Add("mate-on-circle", &o->mate_on_circle, NonNegative(10), "-",

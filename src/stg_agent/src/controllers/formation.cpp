@@ -110,7 +110,7 @@ void Formation::Act(const ControllerInput<T>& in, const Guidance<T>& guidance, T
     const NeighbourSight<T>& n = in.neighbours[j];
     const auto beside = Abs(n.p_WN.z - k.p_WB.z) < T(circle.layer_m);
     v = v + ring.Miss(own, {n.p_WN.x - k.p_WB.x, n.p_WN.y - k.p_WB.y}, {n.v_W.x, n.v_W.y},
-                      T(options.clearance_m) + n.age_s * T(options.doubt_mps),
+                      T(options.clearance_m) + n.age_s * T(options.doubt_mps), ring.Dodge(s),
                       Select(beside, one, zero));
   }
   v = ring.ClearOfChart(in, Limited(v, options.slow_mps, options.fast_mps));

@@ -93,6 +93,22 @@ TEST(Encircle, TwoCirclesMoveTowardsEachOtherOnly) {
   EXPECT_EQ(radius(1, 108.0, 200.0), 248.0) << "a lost target is still searched on wide circles";
 }
 
+TEST(Encircle, LargeTeamsSwerveLess) {
+  AgentModel s = Sea();
+  const EncircleOptions o;
+  const auto swerve = [&](int agents) {
+    s.run.agents = agents;
+    // Both fly along the x axis. The other passes at 40 m, so the swerve is small against the
+    // speed.
+    const Knowledge<double> k = Near({5000.0, 0.0, 0.0}, {-2.0, 0.0, 0.0});
+    const NeighbourSight<double> other = Sight({4900.0, 40.0, k.p_WB.z}, {1.0, 0.0, 0.0});
+    return Velocity(s, k, o, {other}).y - Velocity(s, k, o).y;
+  };
+  const double ten = swerve(10), eleven = swerve(11);
+  EXPECT_LT(ten, -0.1) << "away from the other";
+  EXPECT_NEAR(eleven / ten, o.ring_dodge / o.dodge, 0.02);
+}
+
 TEST(Encircle, GroundSpeedStaysBetweenItsLimitsWhateverTheTargetDoes) {
   const AgentModel s = Sea();
   const EncircleOptions o;

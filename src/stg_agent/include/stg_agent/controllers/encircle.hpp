@@ -28,6 +28,7 @@ struct EncircleOptions {
   double climb_mps = 0.25;         ///< largest commanded climb rate
   double ring = 0.2;               ///< two circles, smaller and larger than d* by this share
   double ring_team = 10.0;         ///< for teams of more AUVs than this
+  double ring_dodge = 0.5;         ///< `dodge` of these teams
   double smallest_circle = 0.5;    ///< smallest radius far below or above the target, share of d*
   double dodge = 1.5;           ///< largest sideways speed to avoid an AUV, share of the own speed
   double on_circle = 0.5;       ///< an AUV closer to the circle than this share of d* is on it
@@ -183,10 +184,14 @@ struct Encircle {
   T Guided(const ControllerInput<T>& in, const T& circle, const T& wider) const;
   /// Turns a velocity away from another vehicle or an obstacle that it would pass too closely.
   /// @param r, w position and velocity of the other relative to the own position and the ground
+  /// @param dodge largest sideways speed as a share of the own speed
   /// @param matters 1; 0: ignore the other
   template <class T>
   Level<T> Miss(const Level<T>& v, const Level<T>& r, const Level<T>& w, const T& clearance,
-                const T& matters) const;
+                double dodge, const T& matters) const;
+  /// The sideways speed of Miss. It is smaller in large teams: there an AUV that swerves meets the
+  /// next one, and all of them leave the band.
+  double Dodge(const AgentModel& model) const;
   /// A velocity in the plane that does not lead into an obstacle of the chart. This step is the
   /// last, because other AUVs avoid a collision, too, and obstacles do not.
   template <class T>
