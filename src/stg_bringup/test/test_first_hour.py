@@ -58,6 +58,18 @@ class Help(unittest.TestCase):
         self.assertEqual(status, 2, output)
         self.assertIn("no scenario 'nowhere'", output)
 
+    def test_each_shipped_scenario_runs_by_its_name(self):
+        for name, launch in (("hard", "medium"), ("physical", "medium"), ("hunt", "field"), ("many8_deaths", "field"),
+                             ("fig6_4", "field")):
+            with self.subTest(name):
+                status, output = run(ROOT / "stg", "run", name, "--help")
+                self.assertEqual(status, 0, output)
+                self.assertIn(f"are those of {launch} with scenario:={name}:", output)
+        listed = re.search("(?m)^Scenarios: (.*)$", output)[1].split()
+        shipped = [file.stem for file in (ROOT / "src/stg_bringup/scenarios").glob("*.yaml")]
+        self.assertGreater(len(shipped), 20)
+        self.assertEqual(set(shipped) - set(listed), set())
+
     def test_a_slip_of_the_pen_is_answered_in_two_lines(self):
         for words, hint in ((("run", "meduim"), "did you mean 'medium'?"),
                             (("tset",), "did you mean 'test'?"),
