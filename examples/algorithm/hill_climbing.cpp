@@ -1,17 +1,15 @@
 // A learning algorithm of your own: random search over a linear policy. See
 // docs/how_to/add_an_algorithm.md.
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <sstream>
 
 #include "auv_common/config/files.hpp"
 #include "auv_common/numbers/random.hpp"
 #include "auv_common/plugin.hpp"
+#include "auv_common/testing/temporary_folder.hpp"
 #include "marl_trainer/learn/nn/gaussian_actor.hpp"
 #include "marl_trainer/learn/run/trainer.hpp"
 
@@ -151,8 +149,8 @@ STG_PLUGIN { Algorithms().Add("hill_climbing", std::make_unique<HillClimbingConf
 int main() {
   stg_plugin_register();
 
-  std::string folder = (std::filesystem::temp_directory_path() / "hill_XXXXXX").string();
-  if (mkdtemp(folder.data()) == nullptr) return 1;
+  const TemporaryFolder temporary;
+  const std::string folder = temporary.path().string();
   const Scenario scenario = LoadNamedScenario(config::ScenarioFolder(), "medium_release", "nominal",
                                               {"time.episode_steps=100", "time.tail_steps=40"});
   TrainSetup setup("hill_climbing", "fast");
@@ -164,7 +162,6 @@ int main() {
   const double untrained = Train(scenario, setup, 1, 1, folder + "/first", &first);
   const double trained = Train(scenario, setup, 12, 1, folder + "/one", &one);
   Train(scenario, setup, 12, 2, folder + "/two", &two);
-  std::filesystem::remove_all(folder);
   std::printf("return %.1f after one collection, %.1f after twelve\n", untrained, trained);
   // The return increases, and two workers give the same result as one, bit for bit.
   return trained > untrained && one == two ? 0 : 1;

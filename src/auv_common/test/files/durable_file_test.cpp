@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "auv_common/error.hpp"
+#include "auv_common/testing/temporary_folder.hpp"
 
 namespace stg {
 namespace {
@@ -17,12 +18,9 @@ namespace fs = std::filesystem;
 class DurableFileTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = testing::TempDir() + "durable_file_XXXXXX";
-    ASSERT_NE(mkdtemp(folder_.data()), nullptr);
     path_ = folder_ + "/file";
     std::ofstream(path_) << "old";
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   /// Writes "new" to `path`. Returns the end of the error message; "" if the file was written.
   std::string Refusal(const std::string& path) const {
@@ -41,7 +39,9 @@ class DurableFileTest : public ::testing::Test {
     return text.str();
   }
 
-  std::string folder_, path_;
+  const TemporaryFolder temporary_;
+  const std::string folder_ = temporary_.path().string();
+  std::string path_;
 };
 
 TEST_F(DurableFileTest, TheNewFileTakesTheOldOnesPlaceAndNothingElseIsLeft) {

@@ -9,18 +9,13 @@
 #include <optional>
 
 #include "auv_common/error.hpp"
+#include "auv_common/testing/temporary_folder.hpp"
 
 namespace stg {
 namespace {
 
 class FolderLockTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = testing::TempDir() + "folder_lock_XXXXXX";
-    ASSERT_NE(mkdtemp(folder_.data()), nullptr);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   /// The message with which a lock of the folder is refused; "" if the lock was taken.
   std::string Refusal() const {
     try {
@@ -31,7 +26,8 @@ class FolderLockTest : public ::testing::Test {
     return "";
   }
 
-  std::string folder_;
+  const TemporaryFolder temporary_;
+  const std::string folder_ = temporary_.path().string();
 };
 
 TEST_F(FolderLockTest, OneAtATimeHasTheFolder) {

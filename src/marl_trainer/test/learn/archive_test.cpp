@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "auv_common/error.hpp"
+#include "auv_common/testing/temporary_folder.hpp"
 #include "marl_trainer/learn/checkpoint/checkpoint.hpp"
 #include "marl_trainer/learn/nn/adam.hpp"
 #include "marl_trainer/learn/nn/normaliser.hpp"
@@ -21,13 +22,7 @@ namespace fs = std::filesystem;
 
 class ArchiveTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "archive_test_XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = name;
-    path_ = (folder_ / "file").string();
-  }
-  void TearDown() override { fs::remove_all(folder_); }
+  void SetUp() override { path_ = (folder_ / "file").string(); }
 
   std::string Bytes() const {
     std::ifstream in(path_, std::ios::binary);
@@ -64,7 +59,8 @@ class ArchiveTest : public ::testing::Test {
     return "";
   }
 
-  fs::path folder_;
+  const TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.path();
   std::string path_;
 };
 

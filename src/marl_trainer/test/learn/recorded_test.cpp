@@ -12,6 +12,7 @@
 #include "auv_common/config/files.hpp"
 #include "auv_common/error.hpp"
 #include "auv_common/numbers/random.hpp"
+#include "auv_common/testing/temporary_folder.hpp"
 #include "learn/mappo_setup.hpp"
 #include "marl_trainer/learn/recorded/recorded_trainer.hpp"
 #include "stg_env/scenario/scenario.hpp"
@@ -28,12 +29,8 @@ constexpr TimeNs kSecond = 1000000000;
 class RecordedTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "recorded_test_XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = name;
     trainer_ = std::make_unique<RecordedTrainer>(scenario_, MakeSetup(), Options("run"));
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   static TrainSetup MakeSetup() {
     TrainSetup setup = RecordedSetup(Short().run);
@@ -114,7 +111,8 @@ class RecordedTest : public ::testing::Test {
   }
 
   const Scenario scenario_ = Short();
-  fs::path folder_;
+  const TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.path();
   std::ostringstream log_;
   std::unique_ptr<RecordedTrainer> trainer_;
 };

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "auv_common/config/files.hpp"
+#include "auv_common/testing/temporary_folder.hpp"
 #include "learn/mappo_setup.hpp"
 #include "marl_trainer/learn/run/trainer.hpp"
 #include "stg_env/scenario/scenario.hpp"
@@ -51,13 +52,6 @@ inline std::string Bytes(const fs::path& path) {
 
 class TrainerTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "trainer_test_XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = name;
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   Trainer::Options Options(const std::string& name, int workers = 1) {
     Trainer::Options options;
     options.out = (folder_ / name).string();
@@ -66,7 +60,8 @@ class TrainerTest : public ::testing::Test {
     return options;
   }
 
-  fs::path folder_;
+  const TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.path();
   std::ostringstream log_;
 };
 

@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "auv_common/error.hpp"
+#include "auv_common/testing/temporary_folder.hpp"
 #include "entities/entity_examples.hpp"
 #include "entities/onnx_interpreter.hpp"
 
@@ -41,13 +42,9 @@ EntityPolicy::Parameters DrawnPolicy(EntityNetwork network = EntityNetwork::kPoo
 class EntityPolicyFile : public ::testing::TestWithParam<EntityNetwork> {
  protected:
   void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "entity_policy_XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = name;
     file_ = (folder_ / "policy.onnx").string();
     EntityPolicy(DrawnPolicy(GetParam())).SaveOnnx(file_);
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   onnx::ModelProto Model() const {
     std::ifstream in(file_, std::ios::binary);
@@ -72,7 +69,8 @@ class EntityPolicyFile : public ::testing::TestWithParam<EntityNetwork> {
     return "accepted";
   }
 
-  fs::path folder_;
+  const TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.path();
   std::string file_;
 };
 

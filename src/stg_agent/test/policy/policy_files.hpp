@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "auv_common/error.hpp"
+#include "auv_common/testing/temporary_folder.hpp"
 #include "stg_agent/policy/policy.hpp"
 
 namespace stg::agent {
@@ -58,12 +59,6 @@ inline std::vector<float> RandomObservation(int size, unsigned seed) {
 /// Each test has its own folder.
 class PolicyTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (std::filesystem::temp_directory_path() / "policy_test_XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = name;
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
   std::string Path(const std::string& name) const { return (folder_ / name).string(); }
 
   std::string Bytes(const std::string& path) const {
@@ -102,7 +97,8 @@ class PolicyTest : public ::testing::Test {
     }
   }
 
-  std::filesystem::path folder_;
+  const TemporaryFolder temporary_;
+  const std::filesystem::path folder_ = temporary_.path();
 };
 
 }  // namespace stg::agent

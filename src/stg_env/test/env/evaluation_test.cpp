@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "auv_common/error.hpp"
+#include "auv_common/testing/temporary_folder.hpp"
 #include "env/env_fixture.hpp"
 #include "stg_env/env/seed_blocks.hpp"
 
@@ -101,8 +102,8 @@ agent::Policy ConstantPolicy(const Scenario& s, float bias) {
 
 TEST(MakeDecider, EachAuvFliesItsOwnPolicyWhereThereAreAsMany) {
   const Scenario s = Shipped("medium_release");
-  std::string folder = (std::filesystem::temp_directory_path() / "own_XXXXXX").string();
-  ASSERT_NE(mkdtemp(folder.data()), nullptr);
+  const TemporaryFolder temporary;
+  const std::string folder = temporary.path().string();
   const auto file = [&](int i) { return folder + "/p_" + std::to_string(i) + ".onnx"; };
   for (int i = 0; i < s.run.agents; ++i) {
     ConstantPolicy(s, 0.1F * static_cast<float>(i)).SaveOnnx(file(i));
@@ -126,7 +127,6 @@ TEST(MakeDecider, EachAuvFliesItsOwnPolicyWhereThereAreAsMany) {
   // A policy for all AUVs is preferred to one for each.
   ConstantPolicy(s, 1.0F).SaveOnnx(folder + "/p.onnx");
   EXPECT_EQ(agent::MakeDecider(folder + "/p.onnx", s.model()).policies.size(), 1U);
-  std::filesystem::remove_all(folder);
 }
 
 /// A row of the table in the reference (400 episodes of the release's simulator).

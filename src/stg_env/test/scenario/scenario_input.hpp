@@ -9,6 +9,7 @@
 #include <string>
 
 #include "auv_common/error.hpp"
+#include "auv_common/testing/temporary_folder.hpp"
 #include "stg_env/scenario/scenario.hpp"
 
 namespace stg::scenario_test {
@@ -30,19 +31,13 @@ std::string ErrorOf(F call) {
 /// Each test has its own folder with files that it writes.
 class ScenarioFolder : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "scenario_XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = name;
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   std::string Write(const std::string& name, const std::string& text) const {
     std::ofstream(folder_ / name, std::ios::binary) << text;
     return (folder_ / name).string();
   }
 
-  fs::path folder_;
+  const TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.path();
 };
 
 /// Tests that replace one line of a scenario file.

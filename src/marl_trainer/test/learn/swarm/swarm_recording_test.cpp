@@ -11,6 +11,7 @@
 #include "auv_common/config/files.hpp"
 #include "auv_common/config/loader.hpp"
 #include "auv_common/error.hpp"
+#include "auv_common/testing/temporary_folder.hpp"
 #include "learn/swarm/swarm_flight.hpp"
 #include "marl_trainer/learn/swarm/recorded_swarm_trainer.hpp"
 
@@ -25,13 +26,9 @@ constexpr int kFlightSteps = 40, kFlightCommands = 8;
 class SwarmRecording : public ::testing::Test {
  protected:
   void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "swarm_recording_XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = name;
     config_ = RecordedSwarmConfig();
     config_.minibatch = 20;
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   static Scenario Short(const std::string& name = "field", int agents = 3) {
     return LoadNamedScenario(
@@ -49,7 +46,8 @@ class SwarmRecording : public ::testing::Test {
 
   Scenario scenario_ = Short();
   SwarmConfig config_;
-  fs::path folder_;
+  const TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.path();
   std::ostringstream log_;
 };
 

@@ -9,6 +9,7 @@
 
 #include "auv_common/config/files.hpp"
 #include "auv_common/error.hpp"
+#include "auv_common/testing/temporary_folder.hpp"
 #include "marl_trainer/learn/swarm/swarm_trainer.hpp"
 
 /// Small trainings with swarms of several sizes.
@@ -34,9 +35,6 @@ SwarmTask Waters(int agents) {
 class SwarmTraining : public ::testing::Test {
  protected:
   void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "swarm_test_XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = name;
     config_.envs = 16;
     config_.horizon = 4;
     config_.segment = 2;
@@ -46,7 +44,6 @@ class SwarmTraining : public ::testing::Test {
     config_.validation_episodes = 4;
     config_.validation_interval = 1;
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   /// True if the training came to its end.
   bool Train(const std::string& name, int workers, bool resume,
@@ -79,7 +76,8 @@ class SwarmTraining : public ::testing::Test {
     return numbers;
   }
 
-  fs::path folder_;
+  const TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.path();
   SwarmConfig config_;
 };
 
