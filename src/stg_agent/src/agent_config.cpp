@@ -166,7 +166,6 @@ AgentModel ModelOf(const RunConfig& run, const dynamics::WorldConfig& truth,
     Describe(&links, &table);
     config::Apply(differences, table);
   }
-  const auto& v = truth.current.velocity_mps;
   AgentModel model{run,
                    world.vehicle,
                    world.workspace,
@@ -180,7 +179,7 @@ AgentModel ModelOf(const RunConfig& run, const dynamics::WorldConfig& truth,
                    agent.observation,
                    agent.task,
                    agent.fleet,
-                   std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]),
+                   truth.current.largest_mps(),
                    agent.localization,
                    agent.stations};
   // The frame of an AUV may move with the water, and the target moves relative to it.

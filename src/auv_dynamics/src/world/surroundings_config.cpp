@@ -1,5 +1,7 @@
 #include "auv_dynamics/world/surroundings_config.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -43,6 +45,16 @@ void Describe(CurrentConfig* c, config::Table* t) {
       }};
   t->Own("current.random_turn_deg", drawn);
   t->Own("current.random_tide_mps", drawn);
+}
+
+double CurrentConfig::largest_mps() const {
+  double layer = 0.0;
+  for (std::size_t k = 0; k < layer_depth_m.size(); ++k) {
+    layer = std::max(layer, std::hypot(layer_east_mps[k], layer_north_mps[k]));
+  }
+  const double drawn = random() ? random_mps.hi + random_tide_mps : 0.0;
+  return std::hypot(velocity_mps[0], velocity_mps[1], velocity_mps[2]) + layer +
+         std::hypot(tide_mps[0], tide_mps[1]) + drawn;
 }
 
 std::optional<config::Violation> FindConflict(const CurrentConfig& c) {

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -51,6 +53,32 @@ TEST(Current, IsLinearBetweenItsLayersAndConstantBeyond) {
   EXPECT_EQ(Lane(current.At(Pack(-15.0), Pack(9.0)), 0).z, 0.3);
   c.layer_depth_m[2] = 20.0;
   EXPECT_TRUE(FindConflict(c).has_value());
+}
+
+TEST(Current, IsNeverFasterThanItsLargestSpeedAndReachesIt) {
+  CurrentConfig c;
+  c.velocity_mps = {0.3, 0.0, 0.4};
+  EXPECT_NEAR(c.largest_mps(), 0.5, 1e-12);
+  c.velocity_mps = {0.1, 0.0, 0.0};
+  c.layer_depth_m = {10.0, 20.0, 40.0, 50.0};
+  c.layer_east_mps = {0.2, 0.6, 0.0, 0.0};
+  c.tide_mps = {0.2, 0.0};
+  EXPECT_NEAR(c.largest_mps(), 0.9, 1e-12);
+  EXPECT_NEAR(East(Current(c), -20.0, 0.0), 0.9, 1e-12) << "all parts flow eastward there";
+  c.random_mps = {0.0, 0.4};
+  c.random_tide_mps = 0.1;
+  EXPECT_NEAR(c.largest_mps(), 1.4, 1e-12);
+  Current current(c);
+  double fastest = 0.0;
+  for (std::uint32_t episode = 0; episode < 300; ++episode) {
+    current.Reset(0, 1, episode);
+    for (const double depth : {0.0, 10.0, 15.0, 20.0, 30.0, 60.0}) {
+      const auto v = Lane(current.At(Pack(-depth), Pack(97.0 * episode)), 0);
+      fastest = std::max(fastest, std::hypot(v.x, v.y));
+    }
+  }
+  EXPECT_LE(fastest, c.largest_mps());
+  EXPECT_GT(fastest, 0.8 * c.largest_mps());
 }
 
 TEST(Current, TideCarriesADriftingVehicleToAndFro) {

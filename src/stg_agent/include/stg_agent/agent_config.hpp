@@ -53,7 +53,7 @@ struct AgentConfig {
 
 /// All that an AUV may know before it starts: the number of AUVs, its vehicle, workspace, targets,
 /// sensor and network. It is separate from the true values and may differ from them. It contains no
-/// current, disturbance, contact or start positions.
+/// disturbance, contact or start positions, and of the current only the largest speed.
 struct AgentModel {
   RunConfig run;
   dynamics::VehicleConfig vehicle;
@@ -68,7 +68,7 @@ struct AgentModel {
   ObservationConfig observation;
   TaskConfig task;
   FleetConfig fleet;
-  double max_current_mps = 0.0;  ///< largest current, for the range of speeds in packets
+  double max_current_mps = 0.0;  ///< no current of an episode is faster
   LocalizationConfig localization = {};
   StationsConfig stations = {};  ///< charted beacons, and surface craft
 

@@ -115,7 +115,8 @@ Vec3<T> Encircle::Velocity(const ControllerInput<T>& in, const Guidance<T>& guid
   const Knowledge<T>& k = in.knowledge;
   const T zero(0.0), one(1.0);
   const double most = s.vehicle.max_velocity_mps[0];
-  const double slow = std::min(most, std::max(o.slow_mps, s.control.autopilot.min_speed_mps));
+  const double slow = std::min(most, std::max(o.slow_mps + o.slow_in_current * s.max_current_mps,
+                                              s.control.autopilot.min_speed_mps));
   const double fast = std::max(std::min(most, o.fast_mps), slow);
   const double cruise = std::clamp(o.cruise_mps, slow, fast);
 
@@ -203,6 +204,10 @@ void Describe(EncircleOptions* o, config::Table* t) {
   t->Add("cruise", &o->cruise_mps, NonNegative(100), "m/s",
          "speed over ground where the AUV circles against the target's course");
   t->Add("slow", &o->slow_mps, NonNegative(100), "m/s", "smallest speed over ground");
+  t->Add(
+      "slow-in-current", &o->slow_in_current, NonNegative(100), "-",
+      "share of the largest current that is added to `slow`: where the water flows with the AUV, "
+      "its speed over ground cannot be smaller than both together");
   t->Add("fast", &o->fast_mps, NonNegative(100), "m/s",
          "largest speed over ground, and the speed on the way to the circle");
   t->Add("inward", &o->inward_gain, NonNegative(1e3), "-",

@@ -130,6 +130,20 @@ TEST(Encircle, GroundSpeedStaysBetweenItsLimitsWhateverTheTargetDoes) {
   }
 }
 
+TEST(Encircle, FliesFasterOverGroundWhereACurrentMayCarryIt) {
+  AgentModel s = Sea();
+  EncircleOptions o;
+  o.lead_s = 0.0;
+  const auto speed = [&] { return Velocity(s, Near({90.0, 0.0, 0.0}, {0.0, 1.0, 0.0}), o).y; };
+  EXPECT_NEAR(speed(), o.cruise_mps, 1e-9);
+  s.max_current_mps = 0.8;
+  EXPECT_NEAR(speed(), o.cruise_mps, 1e-9) << "not unless slow-in-current says so";
+  o.slow_in_current = 0.5;
+  EXPECT_NEAR(speed(), o.slow_mps + 0.4, 1e-9);
+  s.max_current_mps = 0.1;
+  EXPECT_NEAR(speed(), o.cruise_mps, 1e-9) << "the smallest speed is smaller than cruise";
+}
+
 TEST(Encircle, MakesForTheMiddleBetweenThoseAheadAndBehind) {
   EncircleOptions o;
   o.lead_s = 0.0;

@@ -25,6 +25,9 @@ struct CurrentConfig {
   double random_tide_mps = 0.0;   ///< amplitude; its direction is drawn, too
 
   bool random() const { return random_mps.hi > 0.0; }
+  /// No current of an episode is faster than this: the sum of the largest speeds of all parts
+  /// [m/s].
+  double largest_mps() const;
 };
 
 /// First-order Gauss-Markov disturbance w of Eq. 3, body axes.

@@ -12,15 +12,16 @@ namespace stg::agent {
 
 /// Constants of the law. Lengths and speeds are those of the sea.
 struct EncircleOptions {
-  double cruise_mps = 1.04;   ///< over ground, where the AUV circles against the target's course
-  double slow_mps = 0.9;      ///< smallest speed over ground
-  double fast_mps = 2.3;      ///< largest speed over ground, also on the way to the circle
-  double inward_gain = 8.0;   ///< how steeply the way to the circle points inward
-  double lead_s = 2.8;        ///< the law uses the vehicle's position after this time
-  double spread_gain = 2.0;   ///< relative change of speed per radian off the middle of the gap
-  double spread_limit = 0.5;  ///< largest relative change of speed
-  double clearance_m = 56.0;  ///< horizontal distance at which it passes other AUVs
-  double doubt_mps = 0.5;     ///< added to it per second of age of their packet
+  double cruise_mps = 1.04;      ///< over ground, where the AUV circles against the target's course
+  double slow_mps = 0.9;         ///< smallest speed over ground
+  double slow_in_current = 0.0;  ///< added to it: this share of the largest current
+  double fast_mps = 2.3;         ///< largest speed over ground, also on the way to the circle
+  double inward_gain = 8.0;      ///< how steeply the way to the circle points inward
+  double lead_s = 2.8;           ///< the law uses the vehicle's position after this time
+  double spread_gain = 2.0;      ///< relative change of speed per radian off the middle of the gap
+  double spread_limit = 0.5;     ///< largest relative change of speed
+  double clearance_m = 56.0;     ///< horizontal distance at which it passes other AUVs
+  double doubt_mps = 0.5;        ///< added to it per second of age of their packet
   double mate_clearance_m = 40.0;  ///< the same for AUVs on the same circle
   double horizon_s = 66.0;         ///< closest approaches later than this are ignored
   double layer_m = 20.0;           ///< AUVs farther above or below than this are ignored
