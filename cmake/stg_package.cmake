@@ -48,7 +48,7 @@ endfunction()
 # and command-line programs. The next build finds a new file by itself.
 function(stg_core_sources result)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} src/*.cpp)
-  list(FILTER sources EXCLUDE REGEX "^src/(nodes|tools)/")
+  list(FILTER sources EXCLUDE REGEX "^src/(command_line|nodes|tools)/")
   set(${result} ${sources} PARENT_SCOPE)
 endfunction()
 
@@ -74,6 +74,10 @@ endfunction()
 # stg_core_tool(TARGET NAME): sets up a command-line program of a core and calls it NAME.
 function(stg_core_tool target name)
   set_target_properties(${target} PROPERTIES OUTPUT_NAME ${name})
+  stg_use(${target} PRIVATE auv_common)
+  if(TARGET auv_common_command_line)
+    target_link_libraries(${target} PRIVATE auv_common_command_line)
+  endif()
   stg_optimise(${target} -O1)
 endfunction()
 

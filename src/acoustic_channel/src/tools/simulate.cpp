@@ -218,18 +218,17 @@ int Simulate(const std::string& path, const std::string& folder, bool quiet, boo
 /// Simulates a network with nodes, motion and traffic from a file. Writes a packet log as CSV; the
 /// last line is the summary as one JSON object.
 int main(int argc, char** argv) {
-  CLI::App app(
+  stg::CommandLine app(
+      "simulate",
       "Runs an acoustic network from a file (docs/simulate.md) and writes DIR/packets.csv, "
       "DIR/summary.json and a copy of the file. The last line printed is the summary as JSON.");
   std::string path, folder;
   bool quiet = false, summary_only = false;
-  app.add_option("file", path, "YAML file: duration_s, seed, channel, nodes, traffic")->required();
-  app.add_option("--out", folder, "folder for the results, created if necessary")->required();
-  app.add_flag("--quiet", quiet, "print only the summary");
-  app.add_flag("--summary-only", summary_only,
-               "do not write packets.csv, and remove an existing one");
-  stg::AddPluginOption(&app);
+  app.Add("file", &path, "YAML file: duration_s, seed, channel, nodes, traffic").Required();
+  app.Add("--out", &folder, "folder for the results, created if necessary").Required();
+  app.Add("--quiet", &quiet, "print only the summary");
+  app.Add("--summary-only", &summary_only, "do not write packets.csv, and remove an existing one");
+  app.AddPlugins();
   const std::atomic<int>& stop = stg::HeedStopSignals();
-  return stg::RunProgram("simulate", &app, argc, argv,
-                         [&] { return Simulate(path, folder, quiet, !summary_only, stop); });
+  return app.Run(argc, argv, [&] { return Simulate(path, folder, quiet, !summary_only, stop); });
 }

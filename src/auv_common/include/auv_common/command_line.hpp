@@ -1,70 +1,83 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
-#include <cstdio>
-#include <exception>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
-#include "auv_common/config/plugins.hpp"
-#include "auv_common/error.hpp"
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
 
 namespace stg {
 
-/// Adds the option --plugin. It loads the named library while the command line is parsed.
-inline void AddPluginOption(CLI::App* app) {
-  app->add_option_function<std::vector<std::string>>(
-         "--plugin",
-         [](const std::vector<std::string>& libraries) {
-           for (const std::string& library : libraries) {
-             try {
-               config::LoadPlugin(library, "");
-             } catch (const UserError& error) {
-               throw CLI::ValidationError("--plugin", error.what());
-             }
-           }
-         },
-         "shared library with more controllers, reward terms, ... to choose from; repeatable; the "
-         "key `plugins` of a scenario does the same")
-      ->type_name("LIB")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+namespace config {
+class Table;
 }
+
+/// The options and arguments of a program, with a help page. CLI11 parses them. Its headers take
+/// seconds to compile, so only command_line.cpp includes them.
+class CommandLine {
+ public:
+  /// Variable that receives a value; its present value is the default. A bool is a flag without a
+  /// value. A seed (std::uint64_t) must not be negative; CLI11 would turn -1 into 2^64 - 1.
+  using Target = std::variant<bool*, int*, double*, std::uint64_t*, std::string*,
+                              std::vector<std::string>*, std::vector<double>*>;
+
+  /// A declared option; its functions say more about it.
+  class Option {
+   public:
+    Option& Required();
+    Option& ShowDefault();  ///< the help shows the default
+    Option& From(int lo, int hi);
+    Option& OneOf(const std::vector<std::string>& names);
+    Option& Values(int count);    ///< exactly so many values follow
+    Option& OneValuePerUse();     ///< it may be given several times, with one value each time
+    Option& SplitAt(char comma);  ///< one value may contain several, separated by this character
+    Option& Group(const std::string& title);  ///< part of the help page
+
+   private:
+    friend class CommandLine;
+    explicit Option(CLI::Option* option) : option_(option) {}
+    CLI::Option* option_;
+  };
+
+  /// @param program name of the program, for the messages
+  CommandLine(std::string program, const std::string& description);
+  ~CommandLine();
+  CommandLine(const CommandLine&) = delete;
+  CommandLine& operator=(const CommandLine&) = delete;
+
+  /// @param name "--name" for an option, "name" for an argument without a name
+  Option Add(const std::string& name, Target target, const std::string& meaning);
+  /// Adds an option "--path VALUE" for each field of the table. The value of a flag may be omitted.
+  /// The table must exist until the command line is parsed.
+  void Add(const config::Table& table);
+  /// Adds the option --plugin. It loads the named library while the command line is parsed.
+  void AddPlugins();
+
+  /// How often an option was given.
+  int Count(const std::string& name) const;
+
+  /// Returns nothing if the program can go on. Otherwise returns the exit status: 0 after the help,
+  /// 2 for refused arguments; the reason is on standard error.
+  std::optional<int> Parse(int argc, char** argv);
+  /// Parses the arguments and runs `body`. Returns the exit status: 0 after the help; 2 for refused
+  /// arguments or input; 1 for another failure; otherwise the result of `body`. The reason of a
+  /// failure goes to standard error.
+  int Run(int argc, char** argv, const std::function<int()>& body);
+
+ private:
+  std::string program_;
+  std::unique_ptr<CLI::App> app_;
+};
 
 /// Loads the libraries that --plugin names, before the command line is parsed. A program calls it
 /// if its other options depend on these libraries. Throws UserError.
-inline void LoadPluginArguments(int argc, char** argv) {
-  const std::string name = "--plugin";
-  for (int i = 1; i < argc; ++i) {
-    const std::string argument = argv[i];
-    if (argument == name && i + 1 < argc) {
-      config::LoadPlugin(argv[++i], name + ": ");
-    } else if (argument.rfind(name + "=", 0) == 0) {
-      config::LoadPlugin(argument.substr(name.size() + 1), name + ": ");
-    }
-  }
-}
-
-/// Parses the arguments and runs `body`. Returns the exit status: 0 after the help; 2 for refused
-/// arguments or input; 1 for another failure; otherwise the result of `body`. The reason of a
-/// failure goes to standard error.
-/// @param program name of the program, for the messages
-template <class Body>
-int RunProgram(const std::string& program, CLI::App* app, int argc, char** argv, const Body& body) {
-  const auto fail = [&program](const std::exception& error, int status) {
-    std::fprintf(stderr, "%s: %s\n", program.c_str(), error.what());
-    return status;
-  };
-  try {
-    app->parse(argc, argv);
-    return body();
-  } catch (const CLI::ParseError& error) {
-    return app->exit(error) == 0 ? 0 : 2;
-  } catch (const UserError& error) {
-    return fail(error, 2);
-  } catch (const std::exception& error) {
-    return fail(error, 1);
-  }
-}
+void LoadPluginArguments(int argc, char** argv);
 
 }  // namespace stg

@@ -20,8 +20,8 @@ void PrintResult(const Json& json) {
   }
 }
 
-/// Throws UserError unless the value of an option is from lo to hi. It refuses NaN; CLI::Range
-/// accepts NaN.
+/// Throws UserError unless the value of an option is from lo to hi. It refuses NaN; CLI11's
+/// range accepts NaN.
 inline void CheckOption(const std::string& option, double value, double lo, double hi) {
   if (value >= lo && value <= hi) return;
   char text[96];

@@ -51,7 +51,8 @@ void Print(const char* what, const MotionError& e) {
 /// Replays recorded vehicle motions. The last line is JSON. Exit status 1: beyond the tolerance; 2:
 /// unusable input.
 int main(int argc, char** argv) {
-  CLI::App app(
+  stg::CommandLine app(
+      "check_vehicle",
       "Simulates recorded motions of a torpedo-shaped vehicle with vehicle.model torpedo and "
       "compares every column: speeds, rates and attitude by their range over the file, positions "
       "by the distance run. Each motion starts from rest at the origin under one command; frames "
@@ -61,24 +62,23 @@ int main(int argc, char** argv) {
   double tolerance = 0.01, dt_s = 0.02;
   std::string integrator = "semi_implicit";
   bool over_ground = false;
-  app.add_option("file", file,
-                 "CSV: rpm,rudder_deg,stern_deg,Vc,beta_deg,t,x,y,z,phi,theta,psi,u,v,w,p,q,r")
-      ->required();
-  app.add_option("--tolerance", tolerance, "largest allowed error, as a share of range or distance")
-      ->capture_default_str();
-  app.add_option("--dt", dt_s, "largest physics step [s]")->capture_default_str();
-  app.add_option("--integrator", integrator,
-                 "semi_implicit, as in the public model of the shipped motions, or rk4")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"semi_implicit", "rk4"}));
-  app.add_option("--scenario", scenario,
-                 "use the torpedo of this scenario (name or file); default: the REMUS 100");
-  app.add_option("--set", overrides,
-                 "scenario override key.path=value, for example vehicle.substeps=2");
-  app.add_flag("--advance-over-ground", over_ground,
-               "propeller inflow from the speed over ground, as in the public model");
-  stg::AddPluginOption(&app);
-  return stg::RunProgram("check_vehicle", &app, argc, argv, [&] {
+  app.Add("file", &file,
+          "CSV: rpm,rudder_deg,stern_deg,Vc,beta_deg,t,x,y,z,phi,theta,psi,u,v,w,p,q,r")
+      .Required();
+  app.Add("--tolerance", &tolerance, "largest allowed error, as a share of range or distance")
+      .ShowDefault();
+  app.Add("--dt", &dt_s, "largest physics step [s]").ShowDefault();
+  app.Add("--integrator", &integrator,
+          "semi_implicit, as in the public model of the shipped motions, or rk4")
+      .ShowDefault()
+      .OneOf({"semi_implicit", "rk4"});
+  app.Add("--scenario", &scenario,
+          "use the torpedo of this scenario (name or file); default: the REMUS 100");
+  app.Add("--set", &overrides, "scenario override key.path=value, for example vehicle.substeps=2");
+  app.Add("--advance-over-ground", &over_ground,
+          "propeller inflow from the speed over ground, as in the public model");
+  app.AddPlugins();
+  return app.Run(argc, argv, [&] {
     stg::CheckOption("--tolerance", tolerance, 0.0, 1e6);
     stg::CheckOption("--dt", dt_s, 1e-4, 1.0);
     stg::dynamics::VehicleConfig vehicle;

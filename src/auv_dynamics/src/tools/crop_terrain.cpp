@@ -41,20 +41,19 @@ void Show(const Bathymetry& grid, int columns) {
 /// Crops a region of a bathymetry file and shows it. The last line is JSON. Exit status 2: unusable
 /// input.
 int main(int argc, char** argv) {
-  CLI::App app(
+  stg::CommandLine app(
+      "crop_terrain",
       "Shows a NetCDF bathymetry (such as GEBCO or ETOPO) and crops a region of it. A crop is "
       "written in GEBCO's format: elevation(lat, lon) in whole metres.");
   std::string file, out;
   std::vector<double> region;
   int columns = 72;
-  app.add_option("file", file, "NetCDF file")->required();
-  app.add_option("--region", region, "SOUTH NORTH WEST EAST in degrees; default: the whole file")
-      ->expected(4);
-  app.add_option("--out", out, "write the region to this file");
-  app.add_option("--columns", columns, "width of the map in letters")
-      ->capture_default_str()
-      ->check(CLI::Range(2, 400));
-  return stg::RunProgram("crop_terrain", &app, argc, argv, [&] {
+  app.Add("file", &file, "NetCDF file").Required();
+  app.Add("--region", &region, "SOUTH NORTH WEST EAST in degrees; default: the whole file")
+      .Values(4);
+  app.Add("--out", &out, "write the region to this file");
+  app.Add("--columns", &columns, "width of the map in letters").ShowDefault().From(2, 400);
+  return app.Run(argc, argv, [&] {
     const Bathymetry grid =
         region.empty() ? Bathymetry::Load(file)
                        : Bathymetry::Load(file, {region[0], region[1], region[2], region[3]});

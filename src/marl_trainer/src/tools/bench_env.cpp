@@ -58,23 +58,21 @@ double Bench(const stg::Scenario& s, int envs, int workers, double seconds) {
 /// Measures environment steps per second, including observations and rewards. The last line is one
 /// JSON object.
 int main(int argc, char** argv) {
-  CLI::App app("Measures how fast the vectorised environment steps");
+  stg::CommandLine app("bench_env", "Measures how fast the vectorised environment steps");
   std::string scenario = "medium", condition = "nominal";
   std::vector<std::string> overrides;
   double seconds = 3.0;
   int workers = 1, envs = 64;
   bool scaling = false;
-  app.add_option("--scenario", scenario, "name or file")->capture_default_str();
-  app.add_option("--condition", condition, "stress condition")->capture_default_str();
-  app.add_option("--set", overrides, "scenario override key.path=value, repeatable");
-  app.add_option("--seconds", seconds, "time to measure for")->capture_default_str();
-  app.add_option("--workers", workers, "threads")->check(CLI::Range(1, 256))->capture_default_str();
-  app.add_option("--envs", envs, "parallel environments")
-      ->check(CLI::Range(1, 100000))
-      ->capture_default_str();
-  app.add_flag("--scaling", scaling, "also measure 4, 8, 20, 50 and 100 AUVs");
-  stg::AddPluginOption(&app);
-  return stg::RunProgram("bench_env", &app, argc, argv, [&] {
+  app.Add("--scenario", &scenario, "name or file").ShowDefault();
+  app.Add("--condition", &condition, "stress condition").ShowDefault();
+  app.Add("--set", &overrides, "scenario override key.path=value, repeatable");
+  app.Add("--seconds", &seconds, "time to measure for").ShowDefault();
+  app.Add("--workers", &workers, "threads").From(1, 256).ShowDefault();
+  app.Add("--envs", &envs, "parallel environments").From(1, 100000).ShowDefault();
+  app.Add("--scaling", &scaling, "also measure 4, 8, 20, 50 and 100 AUVs");
+  app.AddPlugins();
+  return app.Run(argc, argv, [&] {
     stg::CheckOption("--seconds", seconds, 1e-6, 1e6);
     const auto load = [&](std::vector<std::string> extra) {
       extra.insert(extra.begin(), overrides.begin(), overrides.end());

@@ -11,17 +11,18 @@
 /// Replays golden traces. The last line is JSON. Exit status 1: beyond the tolerance; 2: unusable
 /// input.
 int main(int argc, char** argv) {
-  CLI::App app(
+  stg::CommandLine app(
+      "check_trace",
       "Replays a trace of the release's simulator in this simulator and compares every column");
   std::vector<std::string> folders;
   std::string scenario = "medium_release";
   double tolerance = 1e-5;
-  app.add_option("folder", folders, "folder with config.yaml and steps.csv")->required();
-  app.add_option("--scenario", scenario,
-                 "scenario that gives the settings missing in the trace's config.yaml")
-      ->capture_default_str();
-  app.add_option("--tolerance", tolerance, "largest absolute error allowed")->capture_default_str();
-  return stg::RunProgram("check_trace", &app, argc, argv, [&] {
+  app.Add("folder", &folders, "folder with config.yaml and steps.csv").Required();
+  app.Add("--scenario", &scenario,
+          "scenario that gives the settings missing in the trace's config.yaml")
+      .ShowDefault();
+  app.Add("--tolerance", &tolerance, "largest absolute error allowed").ShowDefault();
+  return app.Run(argc, argv, [&] {
     stg::CheckOption("--tolerance", tolerance, 0.0, 1e6);
     const stg::Scenario base = stg::LoadNamedScenario(stg::config::ScenarioFolder(), scenario);
     double worst = 0.0;

@@ -14,7 +14,6 @@
 #include "auv_common/durable_file.hpp"
 #include "auv_common/error.hpp"
 #include "auv_common/program.hpp"
-#include "seed_check.hpp"
 #include "stg_agent/controllers/controller.hpp"
 #include "stg_env/env/evaluation.hpp"
 #include "stg_env/env/seed_blocks.hpp"
@@ -73,7 +72,7 @@ class CsvOutput {
 /// The constants of all controllers as options of the command line: --gain 2 means pursuit:gain=2.
 class Constants {
  public:
-  explicit Constants(CLI::App* app) {
+  explicit Constants(stg::CommandLine* app) {
     for (const std::string& name : stg::agent::Controllers().Names()) {
       stg::config::OptionsByName options;
       stg::config::Table table;
@@ -83,8 +82,8 @@ class Constants {
         constant.owners.push_back(name);
         if (constant.owners.size() > 1) continue;
         const std::string unit = field.unit == "-" ? "" : " [" + field.unit + "]";
-        app->add_option("--" + field.path, constant.value, field.meaning + unit)
-            ->group("Constants of controllers");
+        app->Add("--" + field.path, &constant.value, field.meaning + unit)
+            .Group("Constants of controllers");
       }
     }
   }
@@ -117,49 +116,47 @@ class Constants {
 /// Computes the paper's metrics for one policy or built-in controller: a table, and one JSON object
 /// on the last line.
 int main(int argc, char** argv) {
-  CLI::App app("Evaluates a policy or built-in controller on held-out episodes");
+  stg::CommandLine app("evaluate",
+                       "Evaluates a policy or built-in controller on held-out episodes");
   std::string policy, scenario = "medium", condition = "nominal", variant = "stg", csv, record;
   std::vector<std::string> overrides;
   int record_episodes = 1;
   int episodes = 30, workers = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   std::uint64_t seed = 3000;
   bool privileged = false;
-  app.add_option("--policy", policy,
-                 "ONNX file, or one of " + stg::JoinNames(stg::agent::Controllers().Names()) +
-                     ", with constants after a colon: pursuit:gain=2,cap=0.5")
-      ->required();
-  app.add_option("--scenario", scenario, "name or file")->capture_default_str();
-  app.add_option("--condition", condition,
-                 "a file, or one of " +
-                     stg::JoinNames(stg::config::ConditionNames(stg::config::ScenarioFolder())))
-      ->capture_default_str();
-  app.add_option(
-         "--variant", variant,
-         "stg, semantic, velocity3 or tau6 (Table S9): observation and action interface of the "
-         "policy; return uses the scenario's reward, training_return that of the variant")
-      ->capture_default_str();
-  app.add_option("--episodes", episodes, "number of episodes")
-      ->check(CLI::Range(1, 1000000))
-      ->capture_default_str();
-  app.add_option("--seed", seed,
-                 "episode e is drawn from seed + e; from " +
-                     std::to_string(stg::env::kReportingSeeds.first) +
-                     " on, seeds that no training and no choice used")
-      ->check(stg::learn::SeedCheck())
-      ->capture_default_str();
-  app.add_option("--set", overrides, "scenario override key.path=value, repeatable");
-  app.add_option("--workers", workers, "threads")->check(CLI::Range(1, 256));
-  app.add_option("--csv", csv, "write one row per episode to this file");
-  app.add_option("--record", record,
-                 "folder for a recording of the first episodes, which ./stg report shows");
-  app.add_option("--record-episodes", record_episodes, "number of recorded episodes")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  app.add_flag("--privileged", privileged,
-               "a built-in controller reads true states, also in acoustic mode");
+  app.Add("--policy", &policy,
+          "ONNX file, or one of " + stg::JoinNames(stg::agent::Controllers().Names()) +
+              ", with constants after a colon: pursuit:gain=2,cap=0.5")
+      .Required();
+  app.Add("--scenario", &scenario, "name or file").ShowDefault();
+  app.Add("--condition", &condition,
+          "a file, or one of " +
+              stg::JoinNames(stg::config::ConditionNames(stg::config::ScenarioFolder())))
+      .ShowDefault();
+  app.Add("--variant", &variant,
+          "stg, semantic, velocity3 or tau6 (Table S9): observation and action interface of the "
+          "policy; return uses the scenario's reward, training_return that of the variant")
+      .ShowDefault();
+  app.Add("--episodes", &episodes, "number of episodes").From(1, 1000000).ShowDefault();
+  app.Add("--seed", &seed,
+          "episode e is drawn from seed + e; from " +
+              std::to_string(stg::env::kReportingSeeds.first) +
+              " on, seeds that no training and no choice used")
+
+      .ShowDefault();
+  app.Add("--set", &overrides, "scenario override key.path=value, repeatable");
+  app.Add("--workers", &workers, "threads").From(1, 256);
+  app.Add("--csv", &csv, "write one row per episode to this file");
+  app.Add("--record", &record,
+          "folder for a recording of the first episodes, which ./stg report shows");
+  app.Add("--record-episodes", &record_episodes, "number of recorded episodes")
+      .From(1, 1000)
+      .ShowDefault();
+  app.Add("--privileged", &privileged,
+          "a built-in controller reads true states, also in acoustic mode");
   Constants constants(&app);
-  stg::AddPluginOption(&app);
-  return stg::RunProgram("evaluate", &app, argc, argv, [&] {
+  app.AddPlugins();
+  return app.Run(argc, argv, [&] {
     const stg::Scenario given =
         stg::LoadNamedScenario(stg::config::ScenarioFolder(), scenario, condition, overrides);
     const stg::Scenario s = stg::env::EvaluationScenario(given, variant);

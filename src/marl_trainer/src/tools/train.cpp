@@ -1,4 +1,3 @@
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cstring>
@@ -11,7 +10,6 @@
 #include "auv_common/config/files.hpp"
 #include "auv_common/error.hpp"
 #include "auv_common/stop_signals.hpp"
-#include "declared_options.hpp"
 #include "marl_trainer/learn/run/trainer.hpp"
 #include "ranks/mpi.hpp"
 #include "stg_env/scenario/scenario.hpp"
@@ -64,43 +62,36 @@ int Train(int argc, char** argv, stg::learn::Communicator* ranks) {
   bool resume = false;
   int workers = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 
-  CLI::App app("Trains a policy and writes it as ONNX.");
-  app.add_option("--scenario", scenario_name, "shipped name or file")->capture_default_str();
-  app.add_option("--condition", condition, "stress condition of a shipped scenario")
-      ->capture_default_str();
-  app.add_option("--train-on", mix,
-                 "conditions that the training environments cycle through, e.g. "
-                 "nominal,combined_stress; default: --condition alone")
-      ->delimiter(',');
-  app.add_option("--algorithm", setup.algorithm,
-                 "one of " + stg::JoinNames(stg::learn::Algorithms().Names()))
-      ->capture_default_str();
-  app.add_option("--preset", setup.common.preset,
-                 "defaults of the options below: fast (of this project) or paper (Table S2)")
-      ->capture_default_str();
-  app.add_option("--variant", setup.common.variant, "stg, semantic, velocity3 or tau6 (Table S9)")
-      ->capture_default_str();
-  app.add_option("--out", out, "folder for checkpoints, policies and logs")->required();
-  app.add_flag("--resume", resume,
-               "continue from the folder's newest intact checkpoint, with the folder's scenario, "
-               "options and seed");
-  app.add_option("--workers", workers, "number of threads; results do not depend on it")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
-  app.add_option("--set", overrides, "scenario override key.path=value, repeatable")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  stg::CommandLine app("train", "Trains a policy and writes it as ONNX.");
+  app.Add("--scenario", &scenario_name, "shipped name or file").ShowDefault();
+  app.Add("--condition", &condition, "stress condition of a shipped scenario").ShowDefault();
+  app.Add("--train-on", &mix,
+          "conditions that the training environments cycle through, e.g. "
+          "nominal,combined_stress; default: --condition alone")
+      .SplitAt(',');
+  app.Add("--algorithm", &setup.algorithm,
+          "one of " + stg::JoinNames(stg::learn::Algorithms().Names()))
+      .ShowDefault();
+  app.Add("--preset", &setup.common.preset,
+          "defaults of the options below: fast (of this project) or paper (Table S2)")
+      .ShowDefault();
+  app.Add("--variant", &setup.common.variant, "stg, semantic, velocity3 or tau6 (Table S9)")
+      .ShowDefault();
+  app.Add("--out", &out, "folder for checkpoints, policies and logs").Required();
+  app.Add("--resume", &resume,
+          "continue from the folder's newest intact checkpoint, with the folder's scenario, "
+          "options and seed");
+  app.Add("--workers", &workers, "number of threads; results do not depend on it")
+      .From(1, 1024)
+      .ShowDefault();
+  app.Add("--set", &overrides, "scenario override key.path=value, repeatable").OneValuePerUse();
   const stg::config::Table table = setup.Options();
-  stg::learn::DeclareOptions(table, &app);
-  stg::AddPluginOption(&app);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
+  app.Add(table);
+  app.AddPlugins();
+  if (const std::optional<int> status = app.Parse(argc, argv)) return *status;
 
-  const bool names_scenario = app.count("--scenario") + app.count("--condition") +
-                                  app.count("--train-on") + app.count("--set") >
+  const bool names_scenario = app.Count("--scenario") + app.Count("--condition") +
+                                  app.Count("--train-on") + app.Count("--set") >
                               0;
   const bool kept = earlier && !names_scenario;
   const stg::Scenario scenario = kept ? earlier->scenario

@@ -7,29 +7,29 @@
 #include "auv_common/error.hpp"
 #include "auv_common/program.hpp"
 #include "auv_common/stop_signals.hpp"
-#include "declared_options.hpp"
 #include "marl_trainer/learn/swarm/swarm_trainer.hpp"
 
 int main(int argc, char** argv) {
-  CLI::App app("Trains one policy for swarms of any size in open water and writes it as ONNX.");
+  stg::CommandLine app(
+      "train_swarm",
+      "Trains one policy for swarms of any size in open water and writes it as ONNX.");
   std::string scenario = "field";
   stg::learn::SwarmConfig config;
   stg::learn::SwarmTrainer::Options options;
   options.workers = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  app.add_option("--scenario", scenario, "shipped name or file, in open water")
-      ->capture_default_str();
-  app.add_option("--out", options.out, "folder for checkpoint, policies and logs")->required();
-  app.add_flag("--resume", options.resume, "continue from the folder's checkpoint");
-  app.add_option("--start-from", options.start_from,
-                 "folder of another training; this one starts with its networks and moments");
-  app.add_option("--workers", options.workers, "number of threads; results do not depend on it")
-      ->check(CLI::Range(1, 256))
-      ->capture_default_str();
+  app.Add("--scenario", &scenario, "shipped name or file, in open water").ShowDefault();
+  app.Add("--out", &options.out, "folder for checkpoint, policies and logs").Required();
+  app.Add("--resume", &options.resume, "continue from the folder's checkpoint");
+  app.Add("--start-from", &options.start_from,
+          "folder of another training; this one starts with its networks and moments");
+  app.Add("--workers", &options.workers, "number of threads; results do not depend on it")
+      .From(1, 256)
+      .ShowDefault();
   stg::config::Table table;
   config.Describe(&table);
-  stg::learn::DeclareOptions(table, &app);
-  stg::AddPluginOption(&app);
-  return stg::RunProgram("train_swarm", &app, argc, argv, [&] {
+  app.Add(table);
+  app.AddPlugins();
+  return app.Run(argc, argv, [&] {
     options.log = &std::cout;
     options.stop = &stg::HeedStopSignals();
     const std::string folder = stg::config::ScenarioFolder();
