@@ -1,11 +1,13 @@
 #!/usr/bin/python3
-"""Measures the page of the view in Debian's Chromium, and what it costs a run; prints one JSON object.
+"""Measures the page of the view in Debian's Chromium, and how much it slows a run. Prints JSON.
 
 Parts: page (a report: size, seconds to open, frames a second while it plays, memory), live (twenty AUVs
 at 10 Hz: lag and frames a second), lockstep (what a run in lockstep loses to the view). The last two
-need a sourced workspace. Figures depend on what else the machine does: `load` is given
-with them, and the work (seconds of processor time of all processes of the browser), which depends less on it.
-In lockstep, the view begins and stops to listen many times during one run, because two runs differ by more than it costs.
+need a sourced workspace. Other work of the machine changes the figures. So the output also has the
+machine's `load`, and the processor time of all processes of the browser [s], which depends less on
+the load.
+In lockstep, the view starts and stops to listen many times during one run, because two runs differ
+by more than the view slows them.
 """
 
 import argparse

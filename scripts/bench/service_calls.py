@@ -1,5 +1,6 @@
-"""Calls to the services of a running graph: valid ones, and ones like those of a fault or a stranger.
+"""Valid and wrong calls to the services of a running graph.
 
+The wrong calls are like those of a faulty or foreign program.
 The connections speak the protocol of ROS themselves, because the client of rospy sends only what fits the
 type of a service.
 """
@@ -246,7 +247,7 @@ class Client:
             self.connections[index] = Connection(pool.service)
 
     def call(self):
-        """Makes one call. Returns (index of the service, kind, what came of it)."""
+        """Makes one call. Returns (index of the service, kind, outcome)."""
         (index,) = self.source.choices(range(len(self.pools)), self.weights)
         pool = self.pools[index]
         kind, request, data = pool.draw()
@@ -269,7 +270,7 @@ class Client:
             raise WrongAnswer(f"{pool.service.name}: {kind}: {error} (after {after:.1f} s)") from error
 
     def broken(self, pool, data):
-        """Breaks the protocol on a connection of its own. Returns what came of it."""
+        """Breaks the protocol on a connection of its own. Returns the outcome."""
         what = self.source.choice(("type", "header", "length", "half", "unread"))
         if what == "header":
             with socket.create_connection(pool.service.address, PATIENCE_S) as stranger:

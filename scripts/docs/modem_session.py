@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Draws a conversation of two hosts with emulated S2C modems, as it went.
+"""Records and draws a conversation of two hosts with emulated S2C modems.
 
 The modems run already (roslaunch acoustic_channel modems.launch); both ports have AT interpreters.
 The first host sends a message with acknowledgement and asks for the propagation time, the second
-one answers with a burst. Every line stands at the time when it was written or read.
+one answers with a burst. The picture shows each line at the time when it was written or read.
 """
 
 import argparse

@@ -3,7 +3,8 @@
 
     compare_programs.py devel/lib /usr/lib --policy src/stg_bringup/policies/medium.onnx --pairs 6
 
-The programs take turns, so that what else the machine does meets both. Exit status 1: a result differs.
+The programs take turns, so that other work of the machine slows both alike. Exit
+status 1: a result differs.
 """
 
 import argparse

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 """Prints the number of AUVs of a scenario: `agents` of its file, or else of its base.
 
-Usage: scenario_agents.py SCENARIO, a name or a YAML file. Prints nothing when it cannot tell; what
-is wrong with the scenario, the nodes say best. Exit status 2, and what is wrong, where a file cannot be
-read as YAML.
+Usage: scenario_agents.py SCENARIO, a name or a YAML file. Prints nothing when it cannot find the
+number: the nodes then report the error in the scenario. If a file cannot be read as YAML, it prints
+the error and exits with status 2.
 """
 
 import os

@@ -7,7 +7,8 @@
 #include "marl_trainer/learn/algorithm_config.hpp"
 
 /// Result of each algorithm in the climbing game (Claus and Boutilier 1998) with ten seeds, for the
-/// table of docs/algorithms. It is no test: the best joint action is next to the worst payoffs, and
+/// table of docs/algorithms. It is not a test: the best joint action is next to the worst payoffs,
+/// and
 /// independent learners are known to choose a worse one.
 namespace stg::learn {
 namespace {

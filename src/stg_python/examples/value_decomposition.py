@@ -1,9 +1,10 @@
 #!/usr/bin/python3
 """Value decomposition on discrete actions (VDN): a template for learners of action values.
 
-Q of the team is the sum of the AUVs' own Q(o_i, a_i), one network for all; the team's reward
-teaches it. To make another algorithm of it, change `Learner`: QMIX mixes the sum by the truth in
-infos["state"], independent Q-learning takes infos["agent_rewards"] in place of the sum.
+Q of the team is the sum of the AUVs' own Q(o_i, a_i), with one network for all AUVs. The network
+learns from the team's reward. To turn it into another algorithm, change `Learner`: QMIX mixes the
+sum by the truth in infos["state"], independent Q-learning takes infos["agent_rewards"] in place of
+the sum.
 """
 
 import argparse

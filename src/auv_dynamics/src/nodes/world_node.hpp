@@ -40,7 +40,6 @@ namespace stg::nodes {
 ///
 /// After the last decision of an episode, the final state is published as step T and answered like
 /// any other. Its wrenches are not used. The next episode starts one decision later.
-/// any other; its wrenches are not used. The next episode starts one decision later.
 class WorldNode {
  public:
   /// Throws UserError.

@@ -35,7 +35,7 @@ struct FleetConfig {
   std::vector<std::vector<double>> leave, join;
 
   bool changes() const { return !leave.empty(); }
-  /// Whether an AUV is in the swarm: its latest row decides, and without rows it is.
+  /// Whether an AUV is in the swarm: its latest row decides. An AUV without rows is in the swarm.
   bool present(int agent, double time_s) const;
 };
 
@@ -76,11 +76,11 @@ struct AgentModel {
   int members() const { return run.agents + stations.count(); }  ///< nodes of the acoustic network
   /// Whether a localizer corrects the AUVs' positions.
   bool locates() const;
-  /// Whether it does so by ranges from pings.
+  /// Whether the localizer uses ranges from pings.
   bool pings_members() const { return locates() && localization.by == RangesBy::kPing; }
-  /// Whether their modems measure the directions of received packets.
+  /// Whether the AUVs' modems measure the directions of received packets.
   bool measures_directions() const { return locates() && localization.usbl_std_deg > 0.0; }
-  /// Now and then one of them goes up for a fix by satellite.
+  /// Whether AUVs surface for GPS fixes.
   bool surfaces() const { return locates() && localization.surface_std_m > 0.0; }
   int observation_size() const { return ObservationSpec(observation).size(); }
   /// Time between two looks of the sensor of the target [s].

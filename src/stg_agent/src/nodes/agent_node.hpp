@@ -31,7 +31,8 @@ namespace stg::nodes {
 ///
 /// It decides step k when it has the sensor frame of t_k and the modem's reception window that ends
 /// at t_k. It waits at most `patience` seconds for a window; after that it does not wait for the
-/// modem until it sends again. The first step of a run waits for the modem's empty window, which
+/// modem until the modem sends again. The first step of a run waits for the modem's empty window,
+/// which
 /// shows that it is connected. Of several open steps it decides only the newest. Inputs that
 /// contradict the run are refused, see StepTracker.
 class AgentNode {

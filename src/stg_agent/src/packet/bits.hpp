@@ -54,7 +54,7 @@ inline std::uint64_t ExtendCrc(std::uint64_t crc, std::uint64_t word) {
 
 /// CRC-8 of all bytes except the last one, which contains it.
 inline std::uint64_t Checksum(const Words& words) {
-  std::uint64_t crc = 0xFF;  // so that a packet of zeros is damaged
+  std::uint64_t crc = 0xFF;  // so that a packet of zeros has a wrong checksum
   for (std::size_t w = 0; w + 1 < kWords; ++w) crc = ExtendCrc<8>(crc, words[w]);
   return ExtendCrc<7>(crc, words[kWords - 1]);
 }

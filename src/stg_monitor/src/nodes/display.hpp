@@ -12,8 +12,8 @@
 
 namespace stg::nodes {
 
-/// Sends some steps of a run to displays, because a run in lockstep has many more steps than a
-/// person can see. It always sends the first and the last step of an episode.
+/// Sends some steps of a run to displays, because a run in lockstep has many more steps per second
+/// than a person can see. It always sends the first and the last step of an episode.
 ///
 /// It chooses a step when the world's state of this step arrives. It sends the step when the states
 /// of all AUVs have arrived, too, or after kPatience_s. Times `now_s` are wall time in seconds.

@@ -8,8 +8,8 @@
 
 namespace stg::acoustics::micromodem {
 
-/// Driver of a WHOI Micromodem: packets are flexible data at rate 1, or, of a modem that knows no
-/// such thing, cycles at rate 0 with frames of at most 32 bytes.
+/// Driver of a WHOI Micromodem: packets are flexible data at rate 1. If the modem does not support
+/// flexible data, they are cycles at rate 0 with frames of at most 32 bytes.
 class MicromodemDriver : public ModemDriver {
  public:
   MicromodemDriver(const DriverOptions& options, DriverWorld* world)

@@ -121,7 +121,7 @@ class ModemDriver {
   TimeNs answer_due_ = 0;
   std::optional<DriverPacket> waiting_, under_way_;
   bool taken_ = false;
-  TimeNs again_ = 0;    ///< not before: the modem was busy
+  TimeNs again_ = 0;    ///< the next try comes not before this time, because the modem was busy
   TimeNs give_up_ = 0;  ///< for the present packet or ping
 };
 

@@ -9,7 +9,7 @@
 namespace stg::acoustics::s2c {
 
 /// Driver of an EvoLogics S2C modem whose port has a NET interpreter: packets are instant messages
-/// without acknowledgement, a ping is one with.
+/// without acknowledgement, and a ping is an instant message with acknowledgement.
 class S2cDriver : public ModemDriver {
  public:
   S2cDriver(const DriverOptions& options, DriverWorld* world)

@@ -61,7 +61,7 @@ struct ChannelTotals {
 /// Pings of nodes that range by themselves.
 struct PingTotals {
   std::uint64_t sent = 0;      ///< requests that left
-  std::uint64_t answered = 0;  ///< whose answer came
+  std::uint64_t answered = 0;  ///< requests whose answer arrived
 };
 
 /// Counts the events of all links; it has no cost between events.

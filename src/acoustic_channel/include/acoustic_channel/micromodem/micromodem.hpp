@@ -32,8 +32,8 @@ struct ModemOptions {
 
 /// An emulated WHOI Micromodem: cycles at the rates 0 to 6 with polls, acknowledgements and data
 /// requests, mini-packets, pings, LBL ranging, flexible data packets, settings and clock. Sleeping
-/// and hardware lines are not emulated. A packet is lost whole: all frames of it have a bad CRC
-/// then.
+/// and hardware lines are not emulated. A packet is lost as a whole: then all of its frames have a
+/// bad CRC.
 class Micromodem : public ModemEngine {
  public:
   /// @param world must live as long as this object

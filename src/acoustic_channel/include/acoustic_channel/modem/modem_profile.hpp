@@ -30,8 +30,9 @@ struct ModemProfile {
   double acquisition_db = 0.0;     ///< ratio in the band at which a receiver locks on
   double implementation_db = 0.0;  ///< loss of a real receiver against its error curve
   ErrorCurve errors;
-  /// Bandwidth over bit rate [dB]. Despreading lifts a packet out of the noise by this, but not out
-  /// of others of the same waveform, which it lifts as well: their power counts so much more.
+  /// Bandwidth over bit rate [dB]. Despreading raises a packet above the noise by this ratio. It
+  /// raises other packets of the same waveform by the same ratio, so their power counts this much
+  /// more than noise.
   double spreading_db = 0.0;
 
   double turnaround_s = 0.0;  ///< from the end of a reception or transmission to the next start

@@ -13,7 +13,7 @@ enum class EventKind : std::uint8_t {
   kPresence,      ///< a node joins or leaves
   kMove,          ///< a position becomes known
   kArrivalEnd,    ///< the last sound of a packet at a receiver
-  kSendEnd,       ///< and at its sender
+  kSendEnd,       ///< the last sound of a packet at its sender
   kOffer,         ///< a packet for a modem
   kReply,         ///< a modem answers a ping
   kSend,          ///< a modem wants to send

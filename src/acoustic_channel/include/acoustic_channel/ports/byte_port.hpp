@@ -63,13 +63,14 @@ class BytePort {
 
  protected:
   explicit BytePort(std::string name) : name_(std::move(name)) {}
-  /// False: the stream stays open when no program reads it or a hang-up is wanted (a terminal).
+  /// False: the stream stays open even if no program reads it or a hang-up is requested (a
+  /// terminal).
   virtual bool closes() const { return true; }
   void Open(int stream);
   void Close(const PortListener& listener);
   void ReadSome(const PortListener& listener);
   void WriteSome(TimeNs now, const PortListener& listener);
-  /// Exchanges the connections of two ports, with what waits to be written.
+  /// Exchanges the connections of two ports, with the bytes that wait to be written.
   void Exchange(BytePort* other);
 
   std::string name_;

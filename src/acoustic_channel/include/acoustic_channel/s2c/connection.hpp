@@ -73,7 +73,7 @@ class Connection {
   bool TakeBurst(const PacketHeader& header, TimeNs t, bool* fresh);
   void TakeBurstAck(const PacketHeader& header, TimeNs t);
   void TakeClose(int source);
-  /// When the packet under way began and ended to leave, for ranging.
+  /// Begin and end of the transmission of the packet under way, for ranging.
   TimeNs began() const { return began_; }
   TimeNs ended() const { return ended_; }
 

@@ -12,9 +12,9 @@ enum class MessageType : std::uint8_t {
   kAck,    ///< acknowledgement; its payload is a piggyback message, or an unused byte
   // Of acoustic connections.
   kConnect,   ///< a modem wants to connect
-  kAccept,    ///< and is answered
+  kAccept,    ///< the answer to kConnect
   kBurst,     ///< data
-  kBurstAck,  ///< and its acknowledgement
+  kBurstAck,  ///< the acknowledgement of a burst
   kClose,     ///< the other end closes, too
 };
 

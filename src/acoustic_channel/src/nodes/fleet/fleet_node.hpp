@@ -32,8 +32,8 @@ namespace stg::nodes {
 /// or at sea.
 ///
 /// Vehicles send odometry and packets at any time. The channel follows the clock of ROS, of any
-/// source, with a short delay. No node waits for this one, and it waits for no node longer than its
-/// patience. If the clock goes back, a new run begins.
+/// source, with a short delay. No node waits for this one, and this one waits for other nodes at
+/// most for its patience. If the clock goes back, a new run begins.
 class FleetNode : private acoustics::FleetListener {
  public:
   /// Throws UserError.

@@ -26,9 +26,10 @@ struct RunConfig {
   std::uint64_t seed = 0;
   int agents = 4;
   /// Number of nodes that only answer pings, where `agents` counts the nodes of an acoustic
-  /// network; they are the last nodes. It is no key of a file.
+  /// network; they are the last nodes. This is not a key of a file.
   int transponders = 0;
-  /// The same, of the nodes before those: how many have a clock that GPS keeps right. It is no key.
+  /// Number of the nodes directly before those whose clocks GPS keeps right. This is not a key
+  /// either.
   int timekeepers = 0;
   TimeConfig time;
 

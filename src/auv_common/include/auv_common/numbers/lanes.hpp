@@ -97,8 +97,8 @@ inline void SinCos(double a, double* s, double* c) {
   *c = pc.get(0);
 }
 
-/// Nearest number with float32's 24-bit significand, by Veltkamp's splitting. A pair of casts would
-/// not do: GCC 12 at -O3 removes a vectorised double-float-double round trip. Exact in float32's
+/// Nearest number with float32's 24-bit significand, by Veltkamp's splitting. Two casts would not
+/// work: GCC 12 at -O3 removes a vectorised double-float-double round trip. Exact in float32's
 /// normal range; no other numbers are used.
 template <class T>
 inline T RoundToFloat(const T& a) {

@@ -9,7 +9,7 @@
 namespace stg::dynamics {
 
 /// Velocity commands that wait for their odometry. Commands and odometry come over separate
-/// connections, so either may be ahead of the other by several steps.
+/// connections, so each of them may be ahead of the other by several steps.
 ///
 /// A command waits while its stamp is at most kMost periods ahead of the newest odometry. Any other
 /// command waits only for the next odometry, because a command may come first when the clock jumps

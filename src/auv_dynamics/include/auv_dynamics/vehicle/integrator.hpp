@@ -42,8 +42,8 @@ void StepRk4(const Accelerate& accelerate, const Limit& limit, double dt, Vehicl
   };
   const auto derive = [&](const T(&q)[4], const BodyVelocity<T>& nu, double c) {
     Derivative d;
-    // A stage's quaternion is off unit norm by O(dt^2); its rotation must still be
-    // a rotation, or the step would depend on the heading.
+    // The norm of a stage's quaternion differs from 1 by O(dt^2). Its matrix must still be a
+    // rotation; otherwise the step would depend on the heading.
     const T norm2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
     const Mat3<T> R = RotationOf(q, T(2.0) / norm2);
     d.p = R * nu.v;

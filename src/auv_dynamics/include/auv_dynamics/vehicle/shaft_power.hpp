@@ -5,8 +5,8 @@
 
 namespace stg::dynamics {
 
-/// Whether the first actuator of AUV i is the propeller of `vehicle.torpedo`, as a share of its
-/// largest rpm.
+/// Whether the first actuator of AUV i is the propeller of `vehicle.torpedo`, with commands as
+/// shares of its largest rpm.
 bool TurnsPropeller(const VehicleConfig& config, int i);
 
 /// Mechanical power of a torpedo's shaft, P = 2 pi n Q with Q = rho n^2 D^5 K_Q(J) [W]. K_Q is the

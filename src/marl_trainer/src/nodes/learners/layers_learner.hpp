@@ -31,7 +31,7 @@ class LayersLearner : public OnlineLearner {
   std::int64_t env_steps() const override { return trainer_.env_steps(); }
 
  private:
-  /// Keeps the good ones.
+  /// Keeps the good episodes.
   std::vector<Episode> Judge(std::vector<learn::RecordedEpisode> episodes);
 
   const Scenario scenario_;

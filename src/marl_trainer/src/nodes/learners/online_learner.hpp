@@ -32,7 +32,7 @@ class OnlineLearner {
     std::uint64_t foreign_messages = 0;
     std::string error;  ///< reason why the bag, or a part of it, could not be used
   };
-  /// What the node wants of a live run.
+  /// The topics that the node needs from a live run.
   struct Hooks {
     /// Whether messages of this episode and stamp count.
     std::function<bool(std::uint32_t episode, const ros::Time& stamp)> wanted;
@@ -41,7 +41,7 @@ class OnlineLearner {
   };
 
   virtual std::vector<ros::Subscriber> Subscribe(const Hooks& hooks) = 0;
-  /// Forgets what is recorded of unfinished episodes.
+  /// Drops the records of unfinished episodes.
   virtual void Restart() = 0;
   /// The episodes that ended since the last call.
   virtual std::vector<Episode> TakeDone() = 0;

@@ -31,7 +31,7 @@ struct AgentOutput {
 ///
 /// Conventions that the paper leaves open:
 /// - Confidence (Eq. 13) is that of the estimated distance. It is 0 while the track is lost, and
-///   while every observation, own or shared, is too old for the link estimator. The cue is no
+///   while every observation, own or shared, is too old for the link estimator. A cue is not an
 ///   observation.
 /// - Lost: position std above track.lost_std_m, or estimated distance above
 ///   task.lost_distance_m.

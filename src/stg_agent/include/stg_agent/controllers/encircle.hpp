@@ -35,8 +35,8 @@ struct EncircleOptions {
   double on_circle = 0.5;       ///< an AUV closer to the circle than this share of d* is on it
   double mate_on_circle = 0.6;  ///< the same for other AUVs, if there is only one circle
   double keep_off_m = 20.0;     ///< horizontal distance to obstacles
-  double keep_off_doubt = 1.0;  ///< added to it: so many standard deviations of the own position
-  double hurry_from = 0.0;      ///< farther outside than this share of d* it speeds up
+  double keep_off_doubt = 1.0;  ///< standard deviations of the own position, added to keep_off_m
+  double hurry_from = 0.0;  ///< the AUV speeds up if it is farther outside than this share of d*
 };
 
 void Describe(EncircleOptions* o, config::Table* t);
@@ -114,9 +114,10 @@ T SpeedAlong(const Level<T>& v_T, const Level<T>& direction, const T& speed, con
   return Select(square > T(0.0), Sqrt(Max(square, T(0.0))) - b, otherwise);
 }
 
-/// A velocity that does not lead into a disc. A vehicle with the turning radius R_t that points at
-/// it by the angle a off the tangent comes nearer by 2 R_t (1 - cos a) while it turns away at half
-/// of its rate; the other half is for the curve of the edge. So at the distance g from the edge the
+/// A velocity that does not lead into a disc. A vehicle with the turning radius R_t whose course
+/// leads into the disc at the angle a to the tangent comes nearer by 2 R_t (1 - cos a) while it
+/// turns away at half of its largest turn rate; the other half is for the curvature of the edge. So
+/// at the distance g from the edge the
 /// steepest allowed way in is cos a = 1 - g / (2 R_t). Inside the disc, the way leads out. A
 /// vehicle that wants to pass on the other side first turns away from the disc, because the shorter
 /// turn leads into it.
@@ -149,10 +150,9 @@ Level<T> TurnedOff(const Level<T>& v, const Level<T>& own, const Level<T>& there
 /// team that is too large for one circle, every other AUV flies inside and the others outside of
 /// d*. In a closed basin it keeps the target's depth.
 ///
-/// Vehicles that need flow over their fins turn as tightly as their ground speed over the turn rate
-/// allows: where the circle runs against the target's course, the radius over ground is
-/// R (1 - v_T / u)^2 at the relative speed u, which is v_T + cruise, and never less than v_T +
-/// slow.
+/// The radius of a turn over ground is the ground speed divided by the turn rate. Where a circle of
+/// radius R runs against the target's course, this radius is R (1 - v_T / u)^2. The relative speed
+/// u is v_T + cruise, and never less than v_T + slow.
 struct Encircle {
   EncircleOptions options;
 

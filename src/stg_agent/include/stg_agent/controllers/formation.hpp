@@ -47,7 +47,7 @@ struct ContainOptions : FormationOptions {
 /// Each AUV has a place in an even ring around its target. The places follow the order of the AUVs'
 /// bearings, which each AUV knows from packets, so that no message assigns places and ways do not
 /// cross. The AUV flies with the target's estimated velocity and reaches its place along the ring.
-/// A target slower than the vehicles can fly is circled (`encircle`).
+/// If the target is slower than weave_below_mps, the AUVs circle it (`encircle`).
 struct Formation {
   FormationOptions options;
 

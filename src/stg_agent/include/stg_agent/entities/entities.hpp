@@ -7,7 +7,7 @@
 
 namespace stg::agent {
 
-/// The rows of one AUV. Rows past the counts mean nothing.
+/// The rows of one AUV. Rows after the counts have no meaning.
 struct Entities {
   int targets = 0, neighbours = 0, obstacles = 0;
   float self[kSelfNumbers];
@@ -19,13 +19,13 @@ struct Entities {
   int target_of_row[kTargetRows];                         ///< the target that a row is about
 };
 
-/// A neighbour as the entities take it.
+/// A neighbour, as input of the entities.
 struct EntityNeighbour {
   NeighbourSight<double> sight;
   const NeighbourState* report = nullptr;  ///< its newest packet
 };
 
-/// Beliefs of targets beyond the one that it follows, as the entities take them.
+/// An estimate of a target that the AUV does not follow, as input of the entities.
 struct EntityBelief {
   int target = 0;
   Vec3<double> r_BT_W, v_WT;  ///< against the own position, in the frame of the own navigation
@@ -33,7 +33,7 @@ struct EntityBelief {
   double velocity_std_mps = 0.0, information_age_s = 0.0;
 };
 
-/// All that the entities are made of. World axes.
+/// The whole input of the entities. World axes.
 struct EntityInput {
   const AgentModel& model;
   int id;
@@ -73,7 +73,7 @@ void BuildEntities(const AgentView& agent, Entities* out);
 void BuildSearchRow(const SearchMap& map, const Vec3<double>& p_WB, double cos_course,
                     double sin_course, double sensor_m, float* out);
 
-/// The scales of lengths, times and deviations (docs/packages/stg_agent.md).
+/// The scales of lengths, times and deviations (docs/entities.md).
 float FarScale(double distance_m);                       ///< L
 float MiddleScale(double distance_m, double desired_m);  ///< M
 float BandScale(double distance_m, double desired_m);    ///< B

@@ -11,7 +11,7 @@
 
 namespace stg::agent {
 
-/// Meaning of the numbers in a command (docs/packages/stg_agent.md). The policy file names it.
+/// Meaning of the numbers in a command (docs/entities.md). The policy file names it.
 enum class EntityAction {
   kGuidance,  ///< five: guidance of the law `encircle`; all zero: the law without changes
   kLaw5,      ///< five: the same for the law that fits the situation

@@ -39,12 +39,12 @@ struct GraphSpec {
   int joined() const { return hidden + search + 5 * width; }
 };
 
-/// Where the numbers of such a network stand.
+/// Places of the numbers of such a network in the flat array.
 struct GraphBlocks {
   explicit GraphBlocks(const GraphSpec& spec);
 
   using Layer = PoolBlocks::Layer;
-  /// One query of oneself to the rows of a set.
+  /// The query of the AUV itself to the rows of a set.
   struct Attention {
     PoolBlock query;  ///< [width, hidden]
     PoolBlock key;    ///< [width, width]

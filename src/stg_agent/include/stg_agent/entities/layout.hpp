@@ -1,7 +1,7 @@
 #pragma once
 
 /// The observation layout `stg-2:entities`: the knowledge of one AUV, as one row about itself and
-/// any number of rows about others. docs/packages/stg_agent.md lists all numbers.
+/// any number of rows about others. docs/entities.md lists all numbers.
 ///
 /// Frame K of an AUV: origin its own navigated position, x along its course over ground (its
 /// heading below 0.3 m/s), y to port, z up. No number depends on where north is.
@@ -25,7 +25,7 @@ inline constexpr int kObstacleRows = 8;
 /// Every number is clipped to +-this.
 inline constexpr float kEntityClip = 3.0F;
 
-/// Where some of the numbers stand.
+/// Indices of some of the numbers.
 inline constexpr int kSelfDeviation = 8;     ///< of the own position
 inline constexpr int kSelfCommand = 9;       ///< the five of the last command
 inline constexpr int kSelfGraph = 14;        ///< the six of Eq. 18

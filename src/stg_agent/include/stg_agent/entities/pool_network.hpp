@@ -43,7 +43,7 @@ struct PoolBlock {
   }
 };
 
-/// Where the numbers of a network stand.
+/// Places of the numbers of a network in the flat array.
 struct PoolBlocks {
   explicit PoolBlocks(const PoolSpec& spec);
 

@@ -10,8 +10,8 @@ namespace stg::agent {
 /// A target in range is detected in most looks, and a false alarm stands alone. The filter of the
 /// target cannot tell them apart, because it does not know of looks that detected nothing. So a
 /// detection is used only if M of the N looks before it have one that the same target may have
-/// caused (M of N logic; Bar-Shalom and Li 1995). Bearings are always used: two of them do not
-/// tell if one target caused both. Without false alarms every detection is used.
+/// caused (M of N logic; Bar-Shalom and Li 1995). Bearings are always used, because two bearings do
+/// not show if one target caused both. Without false alarms every detection is used.
 class Confirmation {
  public:
   static constexpr int kNeeded = 3;  ///< M

@@ -16,10 +16,10 @@ namespace stg::agent {
 ///
 /// The detections of one AUV at one time are a look. Looks are taken in the order of time. In each,
 /// a target gets at most one detection, the one that LookAssignment gives it; the others are
-/// dropped. It counts with the probability that it is of this target. A shared measurement names
-/// the target that its sender believes it to be of. This name decides only where this AUV has no
-/// estimate of that target; so AUVs whose estimates of two targets are exchanged do not spoil each
-/// other's. Own detections without a target start an estimate that is missing by Initiation.
+/// dropped. It counts with the probability that it is of this target. A shared measurement contains
+/// the target to which its sender assigned it. This AUV uses that target only if it has no estimate
+/// of it. So AUVs that have exchanged two targets do not disturb each other's estimates. If an
+/// estimate is missing, own detections without a target can start it (Initiation).
 ///
 /// The result does not depend on the order of input between two calls of Give. It allocates nothing
 /// after construction.

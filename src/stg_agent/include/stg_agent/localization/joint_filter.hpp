@@ -29,7 +29,7 @@ struct ClockModel {
 
 /// Errors of the AUVs' headings.
 struct HeadingModel {
-  bool estimated = false;  ///< false: they only count as noise of the reckoned ways
+  bool estimated = false;  ///< false: they only count as noise of the displacements
   double std_rad = 0.0;    ///< at the start
   double walk_rad = 0.0;   ///< deviation of the random walk after a second
 };
@@ -79,10 +79,11 @@ struct FixReading {
 /// error h of each AUV's heading; where clocks are estimated, the error and the rate of the clock
 /// of each AUV and each beacon. For an AUV whose log measures
 /// against the water, de/dt = -(C + w) + noise; C, w and the errors of craft are Ornstein-Uhlenbeck
-/// processes, those of beacons and the rates of clocks constants. h is a random walk; it turns the
-/// reckoned way d of its AUV, e += h J d with the quarter turn J, and the directions that the own
-/// modem measures. So ranges and directions of one beacon do not tell a turn of the whole picture
-/// around it, and the filter does not claim that they do.
+/// processes, those of beacons and the rates of clocks constants. h is a random walk. It rotates
+/// the reckoned displacement d of its AUV, so that e grows by h J d with the quarter turn J, and it
+/// rotates the directions that the own modem measures. So ranges and directions of one beacon
+/// cannot detect a rotation of all positions around this beacon, and the covariance of the filter
+/// contains this uncertainty.
 ///
 /// A range (1 + kappa) |p_j - p_l| of the age a depends on the errors at that time, e(t - a) = e +
 /// a (C + w), so no old states are stored. Its curvature across the line of sight is taken to
@@ -102,9 +103,9 @@ class JointFilter {
   void Predict(TimeNs now);
   /// Sets whether the log of an AUV measures against the water (true) or the bottom.
   void SetAdrift(int id, bool adrift);
-  /// An AUV has reckoned this way, which the error of its heading has turned.
+  /// Takes a reckoned displacement of an AUV, which the error of its heading has rotated.
   void Turn(int id, const Vec3<double>& way);
-  /// Sets the depth of an AUV; with it changes the current.
+  /// Sets the depth of an AUV. The AUV's current changes with its depth.
   void SetDepth(int id, double depth_m);
   /// Adds an AUV that has no states yet. With more than kMostObservers, the AUV that was heard
   /// longest ago is removed.

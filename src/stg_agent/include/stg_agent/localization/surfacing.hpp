@@ -14,12 +14,13 @@ struct AgentModel;
 /// Decides when an AUV goes up for a GPS fix (localization.ranges.surface_std_m), with any
 /// controller or policy. One fix serves all AUVs that hear of it.
 ///
-/// It goes when its own position would be worse than surface_std_m by the time at which it could
-/// have a fix, and no AUV has announced within 300 s that it goes. Of those heard within two
-/// minutes the shallowest goes, of equal ones the lowest index; each deeper one waits a minute
-/// longer, for the case that those above do not go. An AUV that hears a lower index announce gives
-/// way. With the fix it goes back to the depth that it came from. Only its vertical velocity is
-/// commanded, so it goes on circling in the plane.
+/// An AUV goes up if the deviation of its own position would be larger than surface_std_m by the
+/// time at which it could have a fix, and if no AUV has announced within 300 s that it goes. Of the
+/// AUVs heard within two minutes the shallowest one goes; of equally deep ones, the one with the
+/// lowest index. Each deeper AUV waits a minute longer, in case the AUVs above it do not go. An AUV
+/// on its way up turns back if it hears the announcement of an AUV with a lower index. With the fix
+/// it returns to its former depth. Only its vertical velocity is commanded, so it continues to
+/// circle in the plane.
 ///
 /// Use, in every episode: Reset; then for every decision Hear each packet, in any order, and
 /// Advance. Deterministic; allocates nothing after construction.

@@ -101,9 +101,10 @@ class MeasurementPacket {
   void ReadToldRanges(Reader* r, NeighbourState* s) const;
   void WriteToldFix(const NeighbourState& s, Writer* w) const;
   void ReadToldFix(Reader* r, NeighbourState* s) const;
-  /// Whatever stands beside the measurements of targets.
+  /// The items of agents with a localizer: ranges, a bearing or a fix.
   void WriteTold(const NeighbourState& s, Writer* w) const;
-  /// What stands in place of measurement k, whose code is next; false: a measurement does.
+  /// Reads such an item in place of measurement k, whose code is next; false: a measurement
+  /// follows.
   bool ReadTold(int k, Reader* r, NeighbourState* s) const;
 
   int agents_, targets_;

@@ -12,8 +12,8 @@
 namespace stg::agent {
 
 /// One beacon or surface craft: its true position, its stated position, and its packet. A beacon
-/// lies at its charted position, apart from the error of the survey. It measures the ranges of the
-/// packets that it receives, and its own packets tell them. A craft measures its position
+/// lies at its charted position, apart from the error of the survey. It measures ranges from the
+/// packets that it receives, and sends them in its own packets. A craft measures its position
 /// by satellite, with a lasting error. It receives the AUVs' packets, estimates their positions as
 /// the AUVs do, and circles around the middle of those that it heard lately. Its hull follows
 /// commands with a lag.

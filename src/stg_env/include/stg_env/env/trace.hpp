@@ -9,9 +9,9 @@
 
 namespace stg::env {
 
-/// A golden trace: the release's simulator driven by given actions. A folder
-/// with config.yaml (initial state, settings) and steps.csv (one row per step
-/// and AUV; row 0 is the initial state, the action of row k leads to row k).
+/// A golden trace: states of the release's simulator under given actions. It is a folder with
+/// config.yaml (initial state, settings) and steps.csv (one row per step and AUV; row 0 is the
+/// initial state, the action of row k leads to row k).
 struct Trace {
   Scenario scenario;
   std::vector<Vec3<double>> p_WB, p_WT, v_WT;  ///< initial world positions and target velocities

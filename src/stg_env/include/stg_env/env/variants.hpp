@@ -6,7 +6,7 @@
 
 namespace stg::env {
 
-/// The scenario a variant of Table S9 trains in:
+/// The scenario in which a variant of Table S9 trains:
 /// - stg: unchanged;
 /// - semantic: observation without the graph block, raw reward;
 /// - velocity3: raw observation, raw reward;

@@ -10,7 +10,7 @@
 
 namespace stg::learn {
 
-/// Hyperparameters of learning with swarms of any size (docs/training.md). A policy step is one
+/// Hyperparameters of learning with swarms of any size (docs/entities.md). A policy step is one
 /// command and lasts 5 s.
 struct SwarmConfig {
   std::uint64_t seed = 0;

@@ -41,9 +41,9 @@ void RequireRecordable(const task::JudgeConfig& scenario);
 Finding CheckSwarmEpisode(const RunConfig& run, const SwarmEpisode& episode,
                           const agent::EntityPolicy& policy);
 
-/// The rollout of an episode that has passed the check: that which SwarmShard collects from the
-/// same flight. There is one difference. After the last decision, SwarmShard sees the next episode
-/// already, so it takes the reward of the band there from the wrong place.
+/// The rollout of an episode that has passed the check. It equals the rollout that SwarmShard
+/// collects from the same flight, with one difference: after the last decision, SwarmShard already
+/// sees the next episode, so its last reward of the band is from the wrong place.
 SwarmRollout RolloutOf(const SwarmConfig& config, const task::JudgeConfig& scenario,
                        const SwarmEpisode& episode);
 

@@ -54,7 +54,7 @@ int LogShares(const ActorWorkspace& w, int row, std::vector<float>* log_shares);
 /// @param without `neighbours` (the rows of neighbours and edges; the six numbers of Eq. 18 stay),
 ///   `graph` (these six numbers, phases and qualities, too), `edges`, `age`, `covariance`, `links`
 ///   (link quality), `search` or `nothing`; another name throws UserError
-/// @param last_command false: nor the AUV's last command
+/// @param last_command false: the network cannot use the AUV's last command either
 std::vector<bool> Blinded(agent::EntityNetwork network, int outputs, const std::string& without,
                           bool last_command);
 /// Names that Blinded accepts; `nothing` is the first.
