@@ -63,7 +63,7 @@ class Server:
         return web.Response(body=self.page, content_type="text/html", charset="utf-8", headers=headers)
 
     async def get_stream(self, request):
-        """Serves a browser until it leaves."""
+        """Serves a browser until it disconnects."""
         socket = web.WebSocketResponse(heartbeat=20.0, compress=False)
         await socket.prepare(request)
         queue = asyncio.Queue(400)

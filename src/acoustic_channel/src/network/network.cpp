@@ -198,7 +198,7 @@ void Network::Move(int node, TimeNs t, const Vec3<double>& p_W, const Vec3<doubl
 void Network::Offer(const Transmission& packet) {
   if (packet.stamp < impl_->now_) throw std::invalid_argument("Network::Offer: in the past");
   if (packet.kind == PacketKind::kPing || packet.kind == PacketKind::kReply) {
-    throw std::invalid_argument("Network::Offer: pings are asked for by Ping");
+    throw std::invalid_argument("Network::Offer: use Ping for a ping");
   }
   const int made = impl_->MakePacket(packet, packet.kind);
   if (packet.stamp == impl_->now_) {

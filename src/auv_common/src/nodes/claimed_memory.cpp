@@ -18,8 +18,7 @@ void ros::Connection::read(std::uint32_t size, const ReadFinishedFunc& finished)
   try {
     original(this, size, finished);
   } catch (const std::bad_alloc&) {
-    ROS_ERROR_THROTTLE(1.0, "no memory for %u bytes that a peer says it will send; it is dropped",
-                       size);
+    ROS_ERROR_THROTTLE(1.0, "no memory for %u bytes of a message; the connection is closed", size);
     drop(TransportDisconnect);
   }
 }

@@ -140,7 +140,7 @@ void WarnOfOverriddenAgents(int agents) {
   const config::Source file = config::NamedSource(config::ScenarioFolder(), name);
   const int own = config::Load<RunConfig>(file, config::Scope::kOwnSections).agents;
   if (own == agents) return;
-  ROS_WARN("%d AUVs, as the launch argument 'agents' says; scenario '%s' itself has %d", agents,
+  ROS_WARN("%d AUVs, from the launch argument 'agents'; scenario '%s' itself has %d", agents,
            name.c_str(), own);
 }
 

@@ -102,7 +102,7 @@ void RunInRealTime(int priority) {
   sched_param parameters{};
   parameters.sched_priority = priority;
   if (sched_setscheduler(0, SCHED_RR | SCHED_RESET_ON_FORK, &parameters) != 0) {
-    ROS_INFO("no real-time priority: %s; delays depend on what else runs here",
+    ROS_INFO("no real-time priority: %s; other programs on this machine can delay this one",
              std::strerror(errno));
   }
 }

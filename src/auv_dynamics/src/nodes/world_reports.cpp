@@ -18,10 +18,11 @@ void WorldNode::WarnOfLoss(int party) {
   if (!losses_.Due()) return;
   Warn();
   const std::string step = std::to_string(step_);
-  warning_ = party == Channel() ? "world: acoustic channel did not close step " + step +
-                                      ", the run goes on without it"
-                                : "world: no command of AUV " + std::to_string(party) +
-                                      " for step " + step + ", the world holds its last command";
+  warning_ = party == Channel()
+                 ? "world: acoustic channel did not close step " + step +
+                       "; the run goes on without waiting for it"
+                 : "world: no command of AUV " + std::to_string(party) + " for step " + step +
+                       "; the last command of this AUV stays in effect";
   warning_ += losses_.more();
   warned_s_ = WallSeconds();
 }

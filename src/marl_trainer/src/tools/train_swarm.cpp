@@ -21,7 +21,7 @@ int main(int argc, char** argv) {
   app.Add("--out", &options.out, "folder for checkpoint, policies and logs").Required();
   app.Add("--resume", &options.resume, "continue from the folder's checkpoint");
   app.Add("--start-from", &options.start_from,
-          "folder of another training; this one starts with its networks and moments");
+          "folder of another training, whose networks and moments are the start of this one");
   app.Add("--workers", &options.workers, "number of threads; results do not depend on it")
       .From(1, 256)
       .ShowDefault();

@@ -121,7 +121,7 @@ class EntityReader {
     }
     ReadNumbers(&p);
     Require(BytesOf(ModelOf(p)) == BytesOf(model_),
-            "it is damaged, or its graph is not what these numbers make");
+            "the file is damaged, or its graph and its numbers do not fit together");
     return p;
   }
 

@@ -48,8 +48,8 @@ std::optional<config::Violation> FindClockConflict(const AgentModel& s) {
   return config::Violation{
       {"localization.ranges.clocks", "channel.physical.modem.clock_offset_std_s",
        "channel.physical.modem.clock_drift_std_ppm"},
-      "these clocks are too far off for travel times that take them to be right: set 'clocks: "
-      "estimated', or 'by: ping'"};
+      "travel times by 'clocks: known' need more exact clocks: set 'clocks: estimated', or 'by: "
+      "ping'"};
 }
 
 /// Conditions for reported fixes, and for AUVs that surface for them.

@@ -98,7 +98,7 @@ void MeasurementPacket::ReadToldFix(Reader* r, NeighbourState* s) const {
   const double y = r->Number(told_error_, kToldErrorBits);
   const double std_m = told_std_.Value(r->Bits(kToldStdBits));
   if (std_m <= 0.0) RefusePacket("a field holds an unused code");
-  if (s->source >= agents_) RefusePacket("a station tells a fix");
+  if (s->source >= agents_) RefusePacket("a station reports a fix");
   if (s->generation - age < 0) RefusePacket("measured before the start");
   s->has_fix = true;
   s->fix = {s->generation - age, x, y, std_m};

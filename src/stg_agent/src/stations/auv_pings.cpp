@@ -180,8 +180,9 @@ std::optional<config::Violation> FindPingConflict(const AgentModel& s,
                           {"localization.ranges.ping_period_s", "localization.ranges.by"});
   }
   violation.keys.emplace_back("channel.access");
-  violation.message = "a ping takes an AUV up to " + std::to_string(each_s) +
-                      " s, until its turn and the answer; the pings are due more often";
+  violation.message =
+      "a ping takes an AUV up to " + std::to_string(each_s) +
+      " s, with the wait for its turn and the answer; pings are due more often than that";
   return violation;
 }
 

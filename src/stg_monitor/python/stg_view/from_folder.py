@@ -118,7 +118,7 @@ def add_ways(recording, simulation, folder):
     unknown = [str(node["id"]) for node, way in zip(nodes, ways) if way is None]
     if unknown:
         names = ", ".join(unknown)
-        recording.notes.append(f"Not in the scene, as the file of the way is not in the folder: {names}.")
+        recording.notes.append(f"Nodes whose motion has no file in the folder are not in the scene: {names}.")
     if len(unknown) == len(nodes):
         return
     moves = any(len(way or ()) > 1 for way in ways) or any("joins_s" in n or "leaves_s" in n for n in nodes)

@@ -45,7 +45,7 @@ def _page(title, data, connect):
     scripts += [_read(WEB / f"{name}.js") for name in SCRIPTS]
     # Such a text would end the element early and change the page. Our scripts and the libraries have none.
     if any("</script" in text.lower() for text in scripts):
-        raise PageError("a script holds the end of a script")
+        raise PageError("the text of a script contains </script")
     styles = [_read(WEB / "vendor/uplot/uPlot.min.css"), _read(WEB / "style.css")]
     policy = (
         f"default-src 'none'; script-src {' '.join(map(_hash, scripts))}; "

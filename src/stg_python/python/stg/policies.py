@@ -75,7 +75,7 @@ def _check(policy, module, mean, std, clip, scale):
         wanted = module(torch.as_tensor(normal, dtype=parameter.dtype, device=parameter.device))
     error = np.abs(policy.mean(seen) - scale * wanted.cpu().numpy()).max()
     if not error < 1e-4:
-        raise ValueError(f"the file would act otherwise than the module: difference {error:.3g}")
+        raise ValueError(f"actions of the file would differ from the module's by {error:.3g}")
 
 
 def export_policy(

@@ -89,7 +89,7 @@ py::array_t<double> Bottom(const Scenario& s, int points) {
 }  // namespace
 
 void BindScenario(py::module_& module) {
-  module.def("scenario_folder", &config::ScenarioFolder, "Where the shipped scenarios lie.");
+  module.def("scenario_folder", &config::ScenarioFolder, "Folder of the shipped scenarios.");
   module.def(
       "load_plugin", [](const std::string& library) { config::LoadPlugin(library, ""); },
       py::arg("library"),

@@ -80,7 +80,7 @@ void FleetNode::Place(int vehicle, const nav_msgs::Odometry& message) {
   }
   if (fleet_.Move(vehicle, NsOf(message.header.stamp), motion) == Word::kLate) {
     return RefuseOdometry(vehicle, Refusals::kStale,
-                          "it came after the channel had passed its stamp");
+                          "the message arrived after the time of its stamp");
   }
   ++odometry_;
   if (frames_.size() < kMostFrames) frames_.insert(message.header.frame_id.substr(0, kFrameText));
@@ -111,7 +111,7 @@ void FleetNode::Offer(int vehicle, const auv_msgs::AcousticPacket& message, Time
   if (packet.destination == kNobody) {
     return refuse("destination " + std::to_string(message.destination) + " does not exist");
   }
-  if (packet.destination == vehicle) return refuse("its destination is its own sender");
+  if (packet.destination == vehicle) return refuse("the destination of the packet is its sender");
   try {
     if (fleet_.Offer(packet) == Word::kLate) ++members_[static_cast<std::size_t>(vehicle)].late;
     ++packets_;

@@ -140,7 +140,8 @@ RecordedSwarmTrainer::RecordedSwarmTrainer(const Scenario& scenario, const Swarm
 
 void RecordedSwarmTrainer::Restore(const TrainState& state, const SwarmStart& start) {
   if (!start.path.empty()) {
-    throw UserError(options_.out + ": holds a training already; without a start policy it goes on");
+    throw UserError(options_.out +
+                    ": holds a training already; to continue it, give no start policy");
   }
   GoOnFrom(
       state, options_.out, [this](const Archive& a) { learner_.Load(a); }, &state_);

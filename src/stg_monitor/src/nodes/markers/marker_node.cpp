@@ -341,7 +341,8 @@ class MarkerNode {
                static_cast<double>(drawn_.TakeRecent()) / health_.period_s());
     refused_.Report(topics::kOdom, &status);
     if (seen(view_.vehicles) == 0) {
-      status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "no AUV to be seen");
+      status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN,
+                          "no position of any AUV has arrived");
     }
   }
 
