@@ -1,6 +1,7 @@
 #include "acoustic_channel/emulator/modem_file.hpp"
 
 #include <algorithm>
+#include <array>
 #include <set>
 
 #include "acoustic_channel/driver/modem_driver.hpp"
@@ -13,6 +14,12 @@ namespace stg::acoustics {
 namespace {
 
 using config::YamlTree;
+
+/// Names of the protocols, in the order of Protocol.
+const std::vector<std::string>& ProtocolNames() {
+  static const std::vector<std::string> names{"s2c", "micromodem", "janus"};
+  return names;
+}
 
 const YamlTree::Entry* FindEntry(const YamlTree& map, const std::string& key) {
   for (const YamlTree::Entry& entry : map.entries) {
@@ -61,11 +68,11 @@ void TakeSettings(const std::string& file, const std::string& prefix, YamlTree* 
     if (one.value.kind != YamlTree::Kind::kScalar || value.empty() || value.size() > 64) {
       Fail(file, one.line, key, "expected a value");
     }
-    if (one.key == (place->protocol == "s2c" ? "AL" : "SRC")) {
+    if (one.key == (place->protocol == Protocol::kS2c ? "AL" : "SRC")) {
       Fail(file, one.line, key,
            "this setting is the address; set the key 'address' of the modem instead");
     }
-    const bool sound = place->protocol == "s2c"
+    const bool sound = place->protocol == Protocol::kS2c
                            ? known.Set(one.key, value) == s2c::Settings::Result::kOk
                            : (one.key + value).find_first_of(",*$\r\n") == std::string::npos;
     if (!sound)
@@ -82,9 +89,12 @@ ModemPlace ReadPlace(const std::string& file, YamlTree map, const std::string& p
   TakeText(file, prefix + ".", "serial", &map, &place.serial);
   TakeText(file, prefix + ".", "firmware", &map, &place.firmware);
   if (const YamlTree::Entry* protocol = FindEntry(map, "protocol")) {
-    place.protocol = protocol->value.scalar;
+    // Other keys depend on it, so it is read first. The loader below refuses an unknown name.
+    const auto& names = ProtocolNames();
+    const auto name = std::find(names.begin(), names.end(), protocol->value.scalar);
+    if (name != names.end()) place.protocol = static_cast<Protocol>(name - names.begin());
   }
-  const bool s2c = place.protocol == "s2c", janus = place.protocol == "janus";
+  const bool s2c = place.protocol == Protocol::kS2c, janus = place.protocol == Protocol::kJanus;
   const auto refuse = [&](const char* key, const char* why) {
     const YamlTree::Entry* entry = FindEntry(map, key);
     if (entry != nullptr) Fail(file, entry->line, prefix + "." + key, why);
@@ -102,12 +112,12 @@ ModemPlace ReadPlace(const std::string& file, YamlTree map, const std::string& p
   }
   config::Table t;
   t.Section(prefix);
-  t.Add("protocol", config::Name(&place.protocol, ModemProtocols()), config::kNone, "-", "");
+  t.Add("protocol", config::Enum(&place.protocol, ProtocolNames()), config::kNone, "-", "");
   t.Add("tcp", &place.tcp, config::Within(0, 65535), "-", "");
   t.Add("baud", &place.baud, config::Within(1, 1e7), "-", "");
   t.Add("serial_baud", &place.serial_baud, config::Within(0, 1e7), "-", "");
   t.Add("clients", &place.clients, config::Within(1, 16), "-", "");
-  t.Add("interpreter", config::Name(&place.interpreter, {"at", "net"}), config::kNone, "-", "");
+  t.Add("interpreter", config::Enum(&place.interpreter, {"at", "net"}), config::kNone, "-", "");
   t.Add("address", &place.address, config::Within(1, s2c || janus ? 254 : 127), "-", "");
   t.Add("broadcast", &place.broadcast, config::Within(-1, s2c ? 255 : 127), "-", "");
   t.Add("pps", &place.pps, config::kNone, "-", "");
@@ -226,14 +236,13 @@ void RefuseTwins(const std::string& file, const YamlTree& list,
 
 }  // namespace
 
-std::vector<std::string> ModemProtocols() { return {"s2c", "micromodem", "janus"}; }
-
-std::string WhyNot(const std::string& protocol, const std::string& profile) {
-  const std::string waveform = ModemProfiles().Make(profile)->waveform;
-  if (protocol == "s2c" && waveform == "evologics_s2c") return "";
-  if (protocol == "janus" && waveform == "janus") return "";
-  if (protocol == "micromodem" && waveform.rfind("micromodem_", 0) == 0) return "";
-  return "a modem with the protocol " + protocol + " cannot have the profile " + profile;
+std::string WhyNot(Protocol protocol, const std::string& profile) {
+  // How the waveforms of a protocol's modems start, in the order of Protocol.
+  static const std::array<const char*, 3> kWaveforms{"evologics_s2c", "micromodem_", "janus"};
+  const auto place = static_cast<std::size_t>(protocol);
+  if (ModemProfiles().Make(profile)->waveform.rfind(kWaveforms[place], 0) == 0) return "";
+  return "a modem with the protocol " + ProtocolNames()[place] + " cannot have the profile " +
+         profile;
 }
 
 ModemFile LoadModemFile(const std::string& path) {
@@ -270,7 +279,8 @@ ModemFile LoadModemFile(const std::string& path) {
   for (std::size_t i = 0; i < file.vehicles.size(); ++i) {
     const ModemVehicle& v = file.vehicles[i];
     if (!v.modem && !v.transponder) continue;
-    const std::string why = WhyNot(v.modem ? v.modem->protocol : "micromodem", profiles[i].name);
+    const std::string why =
+        WhyNot(v.modem ? v.modem->protocol : Protocol::kMicromodem, profiles[i].name);
     if (!why.empty()) Fail(path, list->value.items[i].line, "vehicles", why);
   }
   return file;

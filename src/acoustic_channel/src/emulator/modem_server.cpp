@@ -28,7 +28,7 @@ std::unique_ptr<BytePort> OpenPort(const ModemPlace& place, const std::string& l
 }  // namespace
 
 std::unique_ptr<ModemEngine> MakeEngine(const ModemPlace& place, ModemSurroundings* world) {
-  if (place.protocol == "micromodem") {
+  if (place.protocol == Protocol::kMicromodem) {
     micromodem::ModemOptions options;
     options.address = place.address;
     options.broadcast = place.broadcast;
@@ -37,13 +37,13 @@ std::unique_ptr<ModemEngine> MakeEngine(const ModemPlace& place, ModemSurroundin
     options.settings = place.settings;
     return std::make_unique<micromodem::Micromodem>(options, world);
   }
-  if (place.protocol == "janus") {
+  if (place.protocol == Protocol::kJanus) {
     janus::ModemOptions options;
     options.station = place.address;
     return std::make_unique<janus::JanusModem>(options, world);
   }
   s2c::ModemOptions options;
-  options.net = place.interpreter == "net";
+  options.net = place.interpreter == Interpreter::kNet;
   options.address = place.address;
   options.broadcast = place.broadcast;
   options.defer = place.defer;
@@ -73,7 +73,7 @@ ModemServer::ModemServer(const ModemFile& file, const std::string& command_log)
     if (!v.modem) continue;
     places_[i].port = OpenPort(*v.modem, file.listen);
     places_[i].listener = ListenerOf(node);
-    places_[i].net = v.modem->interpreter == "net";
+    places_[i].net = v.modem->interpreter == Interpreter::kNet;
     places_[i].serial_baud = v.modem->serial_baud;
     ports_.push_back(places_[i].port.get());
     water_.Attach(node, v.modem->address,

@@ -3,6 +3,11 @@
 #include <string>
 
 namespace stg::acoustics::micromodem {
+namespace {
+
+constexpr char kPskWaveform[] = "micromodem_psk";
+
+}  // namespace
 
 Modes::Modes(const ModemProfile& own) {
   const auto at_own_frequency = [&](const std::string& name) {
@@ -18,7 +23,7 @@ Modes::Modes(const ModemProfile& own) {
   mini_ = mini_psk_ = at_own_frequency("micromodem_mini");
   // Nothing is published about mini-packets in PSK. They are assumed to take as long and to be lost
   // as often.
-  mini_psk_.waveform = "micromodem_psk";
+  mini_psk_.waveform = kPskWaveform;
   mini_psk_.name += "_psk";
   // A ping has no content: it is heard where the modem acquires it.
   lbl_ = mini_;
@@ -29,6 +34,10 @@ Modes::Modes(const ModemProfile& own) {
   lbl_.spreading_db = 0.0;
   lbl_.errors = {};
   lbl_.errors.kind = ErrorCurve::Kind::kNone;
+}
+
+bool IsPsk(const ModemProfile* profile) {
+  return profile != nullptr && profile->waveform == kPskWaveform;
 }
 
 int RateOf(const ModemProfile& profile) {

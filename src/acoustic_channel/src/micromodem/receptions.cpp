@@ -9,9 +9,7 @@
 namespace stg::acoustics::micromodem {
 namespace {
 
-bool Psk(const PacketInfo& packet) {
-  return packet.mode != nullptr && packet.mode->waveform == "micromodem_psk";
-}
+bool Psk(const PacketInfo& packet) { return IsPsk(packet.mode); }
 
 /// The frames of a packet, in order.
 std::vector<std::string> Split(const PacketHeader& header,

@@ -25,7 +25,7 @@ int NumberOf(PacketType type, int rate, const PacketInfo& packet) {
     case PacketType::kLbl:
       break;
   }
-  return packet.mode != nullptr && packet.mode->waveform == "micromodem_psk" ? 4 : 2;
+  return IsPsk(packet.mode) ? 4 : 2;
 }
 
 std::string Whole(double value) { return std::to_string(std::lround(value)); }

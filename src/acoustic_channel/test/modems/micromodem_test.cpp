@@ -188,10 +188,10 @@ TEST(Micromodem, ADataRequestEndsWhenTheHostIsSilent) {
 }
 
 TEST(Micromodem, ItIsOfItsOwnFamilyOfProfiles) {
-  EXPECT_EQ(WhyNot("micromodem", "micromodem_psk_r1"), "");
-  EXPECT_EQ(WhyNot("micromodem", "micromodem_fsk_r0"), "");
-  EXPECT_NE(WhyNot("micromodem", "evologics_s2c"), "");
-  EXPECT_NE(WhyNot("s2c", "micromodem_psk_r1"), "");
+  EXPECT_EQ(WhyNot(Protocol::kMicromodem, "micromodem_psk_r1"), "");
+  EXPECT_EQ(WhyNot(Protocol::kMicromodem, "micromodem_fsk_r0"), "");
+  EXPECT_NE(WhyNot(Protocol::kMicromodem, "evologics_s2c"), "");
+  EXPECT_NE(WhyNot(Protocol::kS2c, "micromodem_psk_r1"), "");
 }
 
 }  // namespace

@@ -11,22 +11,27 @@
 
 namespace stg::acoustics {
 
+/// What a modem and its host speak.
+enum class Protocol { kS2c, kMicromodem, kJanus };
+/// Which bytes of an s2c modem are commands: lines that start with AT, or framed ones.
+enum class Interpreter { kAt, kNet };
+
 /// The modem of one vehicle and the port for its host.
 struct ModemPlace {
-  std::string protocol = "s2c";  ///< of ModemProtocols()
-  int tcp = -1;                  ///< port to listen on, 0: any; -1: none
-  std::string pty;               ///< symbolic link to make to a pseudo terminal
-  std::string serial;            ///< device
-  int baud = 19200;              ///< of `serial`
-  int serial_baud = 0;           ///< the output takes the time of such a line; 0: none
-  int clients = 1;               ///< of `tcp` and s2c: one client commands, the others read
+  Protocol protocol = Protocol::kS2c;
+  int tcp = -1;         ///< port to listen on, 0: any; -1: none
+  std::string pty;      ///< symbolic link to make to a pseudo terminal
+  std::string serial;   ///< device
+  int baud = 19200;     ///< of `serial`
+  int serial_baud = 0;  ///< the output takes the time of such a line; 0: none
+  int clients = 1;      ///< of `tcp` and s2c: one client commands, the others read
   std::vector<std::pair<std::string, std::string>> settings{};  ///< stored at power on
   int address = 0;                                              ///< 0: the id and one
   int broadcast = -1;                                           ///< -1: 255 of s2c, 0 of micromodem
-  std::string firmware;            ///< empty: 1.9 of s2c, 2.0.35490 of micromodem
-  std::string interpreter = "at";  ///< of s2c: at or net
-  bool pps = false;                ///< of micromodem: a tick at each second of UTC
-  bool defer = true;               ///< of s2c, as the next one
+  std::string firmware;                        ///< empty: 1.9 of s2c, 2.0.35490 of micromodem
+  Interpreter interpreter = Interpreter::kAt;  ///< of s2c
+  bool pps = false;                            ///< of micromodem: a tick at each second of UTC
+  bool defer = true;                           ///< of s2c, as the next one
   double rssi_offset_db = -190.0;
 };
 
@@ -66,9 +71,7 @@ struct ModemFile {
 /// name, an id or a port.
 ModemFile LoadModemFile(const std::string& path);
 
-/// Names of protocols; and the reason why a modem with a protocol cannot have the profile (empty:
-/// it can).
-std::vector<std::string> ModemProtocols();
-std::string WhyNot(const std::string& protocol, const std::string& profile);
+/// The reason why a modem with a protocol cannot have the profile; empty: it can.
+std::string WhyNot(Protocol protocol, const std::string& profile);
 
 }  // namespace stg::acoustics

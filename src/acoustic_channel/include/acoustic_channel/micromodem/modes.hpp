@@ -24,6 +24,8 @@ class Modes {
   ModemProfile mini_, mini_psk_, lbl_;
 };
 
+/// Whether a packet's profile is PSK; FSK is not, and neither is the profile of no packet (null).
+bool IsPsk(const ModemProfile* profile);
 /// The rate of a profile; -1: it is not of a Micromodem.
 int RateOf(const ModemProfile& profile);
 
