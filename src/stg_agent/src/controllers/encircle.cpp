@@ -14,13 +14,8 @@ T Positive(const T& angle) {
   return Select(angle < T(0.0), angle + T(kTwoPi), angle);
 }
 
-/// A velocity in the same direction with the speed limited to [lo, hi].
-template <class T>
-Level<T> Within(const Level<T>& v, double lo, double hi) {
-  const T speed = Max(Norm(v), T(1e-6));
-  return v * (Clip(speed, T(lo), T(hi)) / speed);
-}
-
+/// In a team on two circles, a change of the radius towards the near edge of the band has no effect
+/// up to this [m]. An AUV that searches for a lost target flies a larger change.
 constexpr double kNear_m = 60.0;
 
 /// True if the AUV flies the larger of two circles.
@@ -120,10 +115,7 @@ Vec3<T> Encircle::Velocity(const ControllerInput<T>& in, const Guidance<T>& guid
   const double fast = std::max(std::min(most, o.fast_mps), slow);
   const double cruise = std::clamp(o.cruise_mps, slow, fast);
 
-  const Level<T> v_T = [&] {
-    const Level<T> v{k.v_WT.x, k.v_WT.y};
-    return v * (Min(Norm(v), T(s.target.max_speed_mps)) / Max(Norm(v), T(1e-6)));
-  }();
+  const Level<T> v_T = TargetVelocity(in);
   const Vec3<T> p_WT = k.p_WB + k.r_BT_W;
   const T z = Height(in, guidance.depth_m);
   const T own_circle = Radius(in, z - p_WT.z);
@@ -172,9 +164,9 @@ Vec3<T> Encircle::Velocity(const ControllerInput<T>& in, const Guidance<T>& guid
   T u = on_it + (T(fast) - on_it) * hurry + guidance.speed_mps;
   u = Min(u, SpeedAlong(v_T, direction, T(fast), u));
   u = Max(u, SpeedAlong(v_T, direction, T(slow), u));
-  const Level<T> wanted = Within(v_T + direction * u, slow, fast);
+  const Level<T> wanted = Limited(v_T + direction * u, slow, fast);
 
-  Level<T> v = Within(wanted + aside, slow, fast);
+  Level<T> v = Limited(wanted + aside, slow, fast);
   v = ClearOfChart(in, v);
   const T climb = Clip((z - k.p_WB.z) * T(o.depth_gain_ps), T(-o.climb_mps), T(o.climb_mps));
   return {v.x, v.y, climb};

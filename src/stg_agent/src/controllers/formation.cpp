@@ -12,12 +12,6 @@ constexpr double kFullTurn = 2.0 * kPi;
 /// Largest number of other AUVs. Of a larger team, the first ones in the input are used.
 constexpr int kMost = 32;
 
-template <class T>
-Level<T> Limited(const Level<T>& v, double lo, double hi) {
-  const T speed = Max(Norm(v), T(1e-6));
-  return v * (Clip(speed, T(lo), T(hi)) / speed);
-}
-
 }  // namespace
 
 template <class T>
@@ -97,10 +91,7 @@ void Formation::Act(const ControllerInput<T>& in, const Guidance<T>& guidance, T
   circle.clearance_m = options.clearance_m;
   circle.doubt_mps = options.doubt_mps;
   const Encircle ring{circle};
-  const Level<T> v_T = [&] {
-    const Level<T> v{k.v_WT.x, k.v_WT.y};
-    return v * (Min(Norm(v), T(s.target.max_speed_mps)) / Max(Norm(v), T(1e-6)));
-  }();
+  const Level<T> v_T = TargetVelocity(in);
   const T z = ring.Height(in, guidance.depth_m);
   const T own_ring = ring.Radius(in, z - (k.p_WB.z + k.r_BT_W.z)) * T(options.radius);
   const T R = ring.Guided(in, own_ring, guidance.radius_m);

@@ -74,6 +74,20 @@ T Norm(const Level<T>& a) {
   return Sqrt(Dot(a, a));
 }
 
+/// A velocity in the same direction with the speed limited to [lo, hi] [m/s].
+template <class T>
+Level<T> Limited(const Level<T>& v, double lo, double hi) {
+  const T speed = Max(Norm(v), T(1e-6));
+  return v * (Clip(speed, T(lo), T(hi)) / speed);
+}
+
+/// The estimated velocity of the target, not faster than it can be [m/s].
+template <class T>
+Level<T> TargetVelocity(const ControllerInput<T>& in) {
+  const Level<T> v{in.knowledge.v_WT.x, in.knowledge.v_WT.y};
+  return v * (Min(Norm(v), T(in.model.target.max_speed_mps)) / Max(Norm(v), T(1e-6)));
+}
+
 /// Present state of another AUV, predicted from its packet: along the own circle if the packet
 /// shows it there, otherwise straight on. Relative to the target, in the plane.
 template <class T>
