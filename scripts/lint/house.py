@@ -225,7 +225,18 @@ def check_namespaces(source=SOURCE):
 
 ENTRY_FUNCTION = re.compile(r'Registry::Entry (\w+)\(\) \{\s*return \{"(\w+)"')
 LISTED = re.compile(r"STG_ENTRY\(\w+, (\w+)\)")
-ENTRY = re.compile(r'\{\s*"(\w+)",\s*(?:&?[A-Z]\w*|\[)')
+ENTRY = re.compile(r'\{\s*"(\w+)",\s*(?:&?[A-Z]\w*|\[|std::)')
+LIST = re.compile(r"static \w*Registry\w*(?:<[^;{]*>)?\s+\w+(?=[({])")
+
+
+def _brackets(text, begin):
+    """Returns the text from the bracket at `begin` to the one that closes it."""
+    depth = 0
+    for end in range(begin, len(text)):
+        depth += (text[end] in "({[") - (text[end] in ")}]")
+        if depth == 0:
+            return text[begin:end]
+    return text[begin:]
 
 
 def registered(source=SOURCE):
@@ -234,7 +245,8 @@ def registered(source=SOURCE):
     texts = {path: "\n".join(lines) for path, lines in _product(source)}
     defined = {f: name for text in texts.values() for f, name in ENTRY_FUNCTION.findall(text)}
     for path, text in texts.items():
-        for body in re.findall(r"static \w*Registry\w*(?:<[^;{]*>)?\s+\w+[({](.*?)\);", text, re.S):
+        for start in LIST.finditer(text):
+            body = _brackets(text, start.end())
             names.update({name: path for name in ENTRY.findall(body)})
             names.update({defined[f]: path for f in LISTED.findall(body) if f in defined})
     return names

@@ -26,4 +26,6 @@ NavigationRegistry& NavigationSystems() {
   return registry;
 }
 
+bool ReckonsPosition(const NavigationConfig& c) { return c.kind == "dead_reckoning"; }
+
 }  // namespace stg::dynamics

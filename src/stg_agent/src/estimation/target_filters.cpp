@@ -1,6 +1,7 @@
 #include <limits>
 
 #include "acoustic_channel/models/propagation_model.hpp"
+#include "auv_dynamics/navigation/navigation_system.hpp"
 #include "auv_dynamics/sensing/target_sensor.hpp"
 #include "stg_agent/estimation/target_filter.hpp"
 
@@ -54,7 +55,7 @@ std::optional<config::Violation> FindClockConflict(const AgentModel& s) {
 
 /// Conditions for reported fixes, and for AUVs that surface for them.
 std::optional<config::Violation> FindFixConflict(const AgentModel& s) {
-  const bool reported = s.navigation.kind == "dead_reckoning" && s.navigation.gps_depth_m > 0.0 &&
+  const bool reported = dynamics::ReckonsPosition(s.navigation) && s.navigation.gps_depth_m > 0.0 &&
                         s.navigation.fixes == dynamics::FixUse::kReported;
   if (reported && s.sensing.relative().ambiguous) {
     return config::Violation{{"navigation.dead_reckoning.fixes", "sensing.sensor"},
@@ -85,7 +86,7 @@ std::optional<config::Violation> FindLocalizationConflict(const AgentModel& s) {
       return config::Violation{{"stations.beacons", "stations.crafts", "localization.kind"},
                                "only a localizer uses stations: set localization.kind"};
     }
-    if (s.navigation.kind == "dead_reckoning" &&
+    if (dynamics::ReckonsPosition(s.navigation) &&
         s.navigation.fixes == dynamics::FixUse::kReported) {
       return config::Violation{{"navigation.dead_reckoning.fixes", "localization.kind"},
                                "only a localizer uses reported fixes: set localization.kind"};
@@ -101,7 +102,7 @@ std::optional<config::Violation> FindLocalizationConflict(const AgentModel& s) {
   }
   const bool corrected =
       s.navigation.gps_depth_m > 0.0 && s.navigation.fixes == dynamics::FixUse::kCorrect;
-  if (s.navigation.kind != "dead_reckoning" || corrected) {
+  if (!dynamics::ReckonsPosition(s.navigation) || corrected) {
     return config::Violation{
         {"localization.kind", "navigation.kind", "navigation.dead_reckoning.gps_depth_m",
          "navigation.dead_reckoning.fixes"},

@@ -54,4 +54,7 @@ class NavigationSystem {
 using NavigationRegistry = Registry<NavigationSystem, const NavigationSetup&>;
 NavigationRegistry& NavigationSystems();
 
+/// Whether the chosen navigation is `dead_reckoning`, whose options then have an effect.
+bool ReckonsPosition(const NavigationConfig& c);
+
 }  // namespace stg::dynamics
