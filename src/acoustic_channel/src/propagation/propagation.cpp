@@ -8,13 +8,9 @@
 #include "acoustic_channel/propagation/boundaries.hpp"
 #include "acoustic_channel/propagation/image_sources.hpp"
 #include "acoustic_channel/water/absorption.hpp"
+#include "auv_common/numbers/attitude.hpp"
 
 namespace stg::acoustics {
-namespace {
-
-constexpr double kPi = 3.14159265358979323846;
-
-}  // namespace
 
 struct Propagation::Geometry {
   double distance_m, range_m;

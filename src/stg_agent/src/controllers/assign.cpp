@@ -46,7 +46,6 @@ EncircleOptions CircleOf(const AssignOptions& o) {
 FormationOptions FormOf(const AssignOptions& o) {
   FormationOptions form;
   form.fast_mps = o.fast_mps;
-  form.weave_below_mps = 0.5;
   return form;
 }
 

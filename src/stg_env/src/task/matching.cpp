@@ -3,13 +3,13 @@
 
 #include "auv_common/numbers/assignment.hpp"
 #include "stg_env/task/swarm_state.hpp"
+#include "totals/set_distance.hpp"
 
 namespace stg::task {
 
 template <class T>
 void Following<T>::Match(std::size_t i, const std::vector<dynamics::TargetState<T>>& targets) {
-  constexpr double kCutoff_m = 100.0;  // as that of OSPA
-  constexpr double kBeyond = 1e-3;     // beyond it, a nearer target is preferred a little
+  constexpr double kBeyond = 1e-3;  // beyond it, a nearer target is preferred a little
   const std::size_t n = targets.size();
   AssignmentSolver<dynamics::kMostTargets, dynamics::kMostTargets> solver;
   for (int lane = 0; lane < kLanesOf<T>; ++lane) {

@@ -10,8 +10,7 @@ namespace stg::task {
 namespace {
 
 constexpr double kWindow_s = 600.0;
-constexpr double kGood_m = 20.0;     // largest error of a good estimate
-constexpr double kCutoff_m = 100.0;  // an estimate with a larger error does not count
+constexpr double kGood_m = 20.0;  // largest error of a good estimate
 
 template <class T>
 T Level(const Vec3<T>& r) {

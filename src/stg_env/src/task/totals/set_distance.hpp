@@ -4,6 +4,9 @@
 
 namespace stg::task {
 
+/// An estimate that is farther than this from every target does not count as one of a target [m].
+inline constexpr double kCutoff_m = 100.0;
+
 /// Distances between two sets of positions, in the plane, of order 1 [m].
 struct SetDistance {
   /// Optimal sub-pattern assignment (Schuhmacher, Vo and Vo 2008): mean, over the larger set, of

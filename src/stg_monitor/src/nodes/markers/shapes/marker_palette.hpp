@@ -6,12 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "auv_common/numbers/attitude.hpp"
 #include "swarm_view.hpp"
 
 /// Points and colours of the markers.
 namespace stg::nodes {
-
-inline constexpr double kPi = 3.14159265358979323846;
 
 inline geometry_msgs::Point At(double x, double y, double z) {
   geometry_msgs::Point p;
