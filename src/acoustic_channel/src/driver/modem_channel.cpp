@@ -155,7 +155,7 @@ LinkStatistics ModemChannel::Link(int source, int destination, TimeNs now) const
   return s;
 }
 
-ModemChannel::Health ModemChannel::health(int node) const {
+ModemChannel::PortHealth ModemChannel::health(int node) const {
   const std::lock_guard<std::mutex> lock(mutex_);
   return health_[static_cast<std::size_t>(node)];
 }

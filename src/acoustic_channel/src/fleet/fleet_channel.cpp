@@ -18,7 +18,7 @@ constexpr std::size_t kMostWaiting = 10'000;
 
 TimeNs Nanoseconds(double s) { return static_cast<TimeNs>(std::llround(s * 1e9)); }
 
-MotionTrack::Limits LimitsOf(const FleetPatience& p) {
+MotionTrack::Options LimitsOf(const FleetPatience& p) {
   return {Nanoseconds(p.odometry_s), Nanoseconds(p.silent_after_s), p.has_velocity};
 }
 

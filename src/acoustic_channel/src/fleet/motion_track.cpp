@@ -11,7 +11,7 @@ Vec3<double> Slope(const Vec3<double>& from, const Vec3<double>& to, TimeNs dura
 
 }  // namespace
 
-MotionTrack::MotionTrack(const Limits& limits) : limits_(limits) {}
+MotionTrack::MotionTrack(const Options& options) : options_(options) {}
 
 MotionTrack::Samples::const_iterator MotionTrack::FirstAfter(TimeNs t) const {
   return std::upper_bound(samples_.begin(), samples_.end(), t,
@@ -31,9 +31,9 @@ std::optional<Motion> MotionTrack::At(TimeNs t) const {
   const auto next = FirstAfter(t);
   if (next == samples_.begin()) return {};
   const auto last = next - 1;
-  const bool bracketed = next != samples_.end() && next->t - last->t <= limits_.patience;
+  const bool bracketed = next != samples_.end() && next->t - last->t <= options_.patience;
   if (bracketed) return Between(*last, *next, t);
-  if (t - last->t > limits_.silent_after) return {};
+  if (t - last->t > options_.silent_after) return {};
   return Beyond(last, t);
 }
 
@@ -58,16 +58,16 @@ Motion MotionTrack::Between(const Sample& a, const Sample& b, TimeNs t) const {
   const double share = Seconds(t - a.t) / Seconds(b.t - a.t);
   Motion m;
   m.p_W = a.motion.p_W + (b.motion.p_W - a.motion.p_W) * share;
-  m.v_W = limits_.has_velocity ? a.motion.v_W + (b.motion.v_W - a.motion.v_W) * share
-                               : Slope(a.motion.p_W, b.motion.p_W, b.t - a.t);
+  m.v_W = options_.has_velocity ? a.motion.v_W + (b.motion.v_W - a.motion.v_W) * share
+                                : Slope(a.motion.p_W, b.motion.p_W, b.t - a.t);
   return m;
 }
 
 Motion MotionTrack::Beyond(Samples::const_iterator last, TimeNs t) const {
   Motion m = last->motion;
-  if (!limits_.has_velocity) {
+  if (!options_.has_velocity) {
     m.v_W = {0.0, 0.0, 0.0};
-    if (last != samples_.begin() && last->t - (last - 1)->t <= limits_.silent_after) {
+    if (last != samples_.begin() && last->t - (last - 1)->t <= options_.silent_after) {
       m.v_W = Slope((last - 1)->motion.p_W, m.p_W, last->t - (last - 1)->t);
     }
   }

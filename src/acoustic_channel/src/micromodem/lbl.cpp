@@ -28,7 +28,7 @@ bool Micromodem::CommandLbl(const std::vector<std::string>& fields, TimeNs t) {
     if (!number) return false;
     n[k] = *number;
   }
-  Ranging ranging;
+  LblRanging ranging;
   const int timeout_ms = remus ? n[4] : n[3];
   if (timeout_ms < 1 || timeout_ms > kLongestTimeoutMs) return false;
   ranging.timeout = timeout_ms * (kSecondNs / 1000);

@@ -6,7 +6,7 @@ namespace stg::acoustics {
 namespace {
 
 constexpr TimeNs kTrackMs = 1'000'000;
-constexpr MotionTrack::Limits kTrackLimits{1000 * kTrackMs, 3000 * kTrackMs, true};
+constexpr MotionTrack::Options kTrackLimits{1000 * kTrackMs, 3000 * kTrackMs, true};
 
 Motion Along(double x, double vx) { return {{x, 0.0, -5.0}, {vx, 0.0, 0.0}}; }
 
@@ -58,7 +58,7 @@ TEST(MotionTrack, OfSeveralWithOneStampTheFirstCounts) {
 }
 
 TEST(MotionTrack, WithoutVelocitiesPositionsTellThem) {
-  MotionTrack::Limits limits = kTrackLimits;
+  MotionTrack::Options limits = kTrackLimits;
   limits.has_velocity = false;
   MotionTrack track(limits);
   track.Add(0, Along(0.0, 99.0));

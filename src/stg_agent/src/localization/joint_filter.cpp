@@ -87,8 +87,8 @@ void JointFilter::Clear() {
   for (int slot = 0; slot < slots_; ++slot) {
     const bool own = slot == 0 && !IsAnchor(self_);
     if (!own && id == self_) ++id;
-    Observer& o = observers_[static_cast<std::size_t>(slot)];
-    o = Observer();
+    Reckoner& o = observers_[static_cast<std::size_t>(slot)];
+    o = Reckoner();
     o.id = own ? self_ : id++;
     for (int axis = 0; axis < 2; ++axis) {
       P(ErrorAt(slot) + axis, ErrorAt(slot) + axis) = start_variance_;
@@ -176,7 +176,7 @@ void JointFilter::SetAdrift(int id, bool adrift) {
 void JointFilter::SetDepth(int id, double depth_m) {
   const int slot = SlotOf(id);
   if (slot < 0) return;
-  Observer& o = observers_[static_cast<std::size_t>(slot)];
+  Reckoner& o = observers_[static_cast<std::size_t>(slot)];
   if (o.dived && depth_m != o.depth_m) {
     const double kept = std::exp(-std::abs(depth_m - o.depth_m) / config_.shear_depth_m);
     for (int axis = 0; axis < 2; ++axis) {
@@ -201,7 +201,7 @@ void JointFilter::Admit(int id, TimeNs heard) {
     }
     Start(slot, id);
   }
-  Observer& o = observers_[static_cast<std::size_t>(slot)];
+  Reckoner& o = observers_[static_cast<std::size_t>(slot)];
   o.heard = std::max(o.heard, heard);
 }
 
@@ -210,8 +210,8 @@ void JointFilter::Admit(int id, TimeNs heard) {
 void JointFilter::Start(int slot, int id) {
   const int like = slot == 0 ? 1 : 0;
   const double t = Seconds(now_);
-  Observer& o = observers_[static_cast<std::size_t>(slot)];
-  o = Observer();
+  Reckoner& o = observers_[static_cast<std::size_t>(slot)];
+  o = Reckoner();
   o.id = id;
   const double shear = Squared(config_.shear_std_mps);
   for (int axis = 0; axis < 2; ++axis) {

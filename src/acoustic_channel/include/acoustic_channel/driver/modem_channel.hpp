@@ -50,12 +50,12 @@ class ModemChannel : public Channel {
   const ChannelTotals& totals() const override { return table_.totals(); }
 
   /// Of a node, for diagnostics.
-  struct Health {
+  struct PortHealth {
     std::string port, firmware;
     bool ready = false;
     ModemDriver::Counts counts;
   };
-  Health health(int node) const;
+  PortHealth health(int node) const;
 
  private:
   struct Outgoing {
@@ -85,7 +85,7 @@ class ModemChannel : public Channel {
   mutable std::mutex mutex_;                       ///< protects the members below
   std::vector<std::optional<Outgoing>> outgoing_;  ///< [nodes]
   std::vector<std::vector<DriverReception>> received_;
-  std::vector<Health> health_;
+  std::vector<PortHealth> health_;
   std::atomic<bool> ends_{false};
   std::thread thread_;
 };

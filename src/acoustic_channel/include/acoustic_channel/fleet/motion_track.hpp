@@ -24,12 +24,12 @@ struct Motion {
 /// before the first one; its motion is then empty.
 class MotionTrack {
  public:
-  struct Limits {
+  struct Options {
     TimeNs patience = 0, silent_after = 0;
     /// False: ignore the velocities of the samples, and use differences of their positions.
     bool has_velocity = true;
   };
-  explicit MotionTrack(const Limits& limits);
+  explicit MotionTrack(const Options& options);
 
   /// Adds a sample at any time, with finite numbers. False: there is one of that time already,
   /// which is kept.
@@ -55,7 +55,7 @@ class MotionTrack {
   Motion Between(const Sample& a, const Sample& b, TimeNs t) const;
   Motion Beyond(Samples::const_iterator last, TimeNs t) const;
 
-  Limits limits_;
+  Options options_;
   Samples samples_;  ///< in order of time
 };
 

@@ -86,7 +86,7 @@ class Micromodem : public ModemEngine {
   };
 
   /// Ranging on a long baseline.
-  struct Ranging {
+  struct LblRanging {
     LblSound ping;
     std::array<int, kLblSlots> wanted{};  ///< 0: no; otherwise 1 or, narrowband, the frequency
     std::array<std::optional<double>, kLblSlots> travel_s{};
@@ -166,7 +166,7 @@ class Micromodem : public ModemEngine {
   TimeNs revision_ = 0;  ///< when the next CAREV is due
   Cycle cycle_;
   Ping ping_;
-  Ranging ranging_;
+  LblRanging ranging_;
   std::deque<Answer> answers_;
   std::optional<Synchronous> synchronous_;
   std::uint32_t tag_ = 0;

@@ -141,7 +141,7 @@ void FleetNode::RefusePacket(int vehicle, const auv_msgs::AcousticPacket& messag
 void FleetNode::RefusePacket(int vehicle, auv_msgs::TransmitStatus* status, Refusals::Reason reason,
                              const std::string& why) {
   refused_packets_.Add(reason);
-  const Vehicle& v = vehicles_[static_cast<std::size_t>(vehicle)];
+  const FleetVehicle& v = vehicles_[static_cast<std::size_t>(vehicle)];
   last_refusal_ = v.Topic(topics::kAcousticTx) + ": " + why;
   status->status = auv_msgs::TransmitStatus::REFUSED;
   status->text = why;

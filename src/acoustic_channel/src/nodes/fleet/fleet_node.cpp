@@ -27,7 +27,7 @@ constexpr TimeNs kStepForward = 3'600'000'000'000;
 
 TimeNs Nanoseconds(double s) { return static_cast<TimeNs>(std::llround(s * 1e9)); }
 
-acoustics::NetworkConfig NetworkParameters(const std::vector<Vehicle>& vehicles) {
+acoustics::NetworkConfig NetworkParameters(const std::vector<FleetVehicle>& vehicles) {
   const std::string name = TextParameter("config", "");
   if (name.empty()) throw UserError("parameter config: must name a file with the section channel");
   const bool path = name.find('/') != std::string::npos || name.find(".yaml") != std::string::npos;
@@ -52,9 +52,9 @@ acoustics::FleetPatience PatienceParameters() {
   return p;
 }
 
-std::vector<int> IdsOf(const std::vector<Vehicle>& vehicles) {
+std::vector<int> IdsOf(const std::vector<FleetVehicle>& vehicles) {
   std::vector<int> ids;
-  for (const Vehicle& v : vehicles) ids.push_back(v.id);
+  for (const FleetVehicle& v : vehicles) ids.push_back(v.id);
   return ids;
 }
 
@@ -107,7 +107,7 @@ void FleetNode::Connect() {
   events_ = node.advertise<auv_msgs::PacketEvents>(topics::kPackets, kQueue);
   links_ = node.advertise<auv_msgs::LinkStates>(topics::kLinks, kQueue, true);
   for (std::size_t i = 0; i < vehicles_.size(); ++i) {
-    const Vehicle& v = vehicles_[i];
+    const FleetVehicle& v = vehicles_[i];
     const int vehicle = static_cast<int>(i);
     Member& m = members_[i];
     m.reception = node.advertise<auv_msgs::AcousticReception>(v.Topic(topics::kAcousticRx), kQueue);

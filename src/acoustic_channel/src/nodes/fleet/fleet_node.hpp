@@ -105,7 +105,7 @@ class FleetNode : private acoustics::FleetListener {
   void Report(diagnostic_updater::DiagnosticStatusWrapper& status);
   void ReportVehicles(diagnostic_updater::DiagnosticStatusWrapper* status) const;
 
-  std::vector<Vehicle> vehicles_;
+  std::vector<FleetVehicle> vehicles_;
   acoustics::NetworkConfig network_;
   acoustics::FleetChannel fleet_;
   TwistFrame twist_;

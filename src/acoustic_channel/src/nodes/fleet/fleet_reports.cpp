@@ -182,7 +182,7 @@ void FleetNode::Report(diagnostic_updater::DiagnosticStatusWrapper& status) {
 
 void FleetNode::ReportVehicles(diagnostic_updater::DiagnosticStatusWrapper* status) const {
   for (std::size_t i = 0; i < vehicles_.size(); ++i) {
-    const Vehicle& v = vehicles_[i];
+    const FleetVehicle& v = vehicles_[i];
     const int vehicle = static_cast<int>(i);
     const bool heard = fleet_.heard_of(vehicle);
     const bool here = fleet_.begun() && fleet_.present(vehicle);

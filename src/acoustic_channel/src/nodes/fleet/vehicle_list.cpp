@@ -24,14 +24,14 @@ std::string TextOf(int place, const XmlRpcValue& value, const std::string& what)
 }
 
 /// Parses NAME or NAME=TOPIC.
-Vehicle FromWord(const std::string& word) {
+FleetVehicle FromWord(const std::string& word) {
   const std::size_t equals = word.find('=');
   if (equals == std::string::npos) return {word, 0, ""};
   return {word.substr(0, equals), 0, word.substr(equals + 1)};
 }
 
-Vehicle FromMap(int place, XmlRpcValue& map) {
-  Vehicle v;
+FleetVehicle FromMap(int place, XmlRpcValue& map) {
+  FleetVehicle v;
   v.id = place;
   for (auto& [key, value] : map) {
     if (key == "name") {
@@ -48,7 +48,7 @@ Vehicle FromMap(int place, XmlRpcValue& map) {
   return v;
 }
 
-void Complete(int place, Vehicle* v) {
+void Complete(int place, FleetVehicle* v) {
   while (!v->name.empty() && v->name.front() == '/') v->name.erase(0, 1);
   std::string error;
   if (v->name.empty() || !ros::names::validate("/" + v->name, error)) {
@@ -63,10 +63,10 @@ void Complete(int place, Vehicle* v) {
   }
 }
 
-void RefuseTwins(const std::vector<Vehicle>& vehicles) {
+void RefuseTwins(const std::vector<FleetVehicle>& vehicles) {
   for (std::size_t i = 0; i < vehicles.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      const Vehicle &a = vehicles[j], &b = vehicles[i];
+      const FleetVehicle &a = vehicles[j], &b = vehicles[i];
       const int place = static_cast<int>(i);
       if (a.name == b.name) RefuseEntry(place, "another vehicle has the name '" + b.name + "'");
       if (a.id == b.id) RefuseEntry(place, "another vehicle has the id " + std::to_string(b.id));
@@ -77,11 +77,11 @@ void RefuseTwins(const std::vector<Vehicle>& vehicles) {
 
 }  // namespace
 
-std::vector<Vehicle> VehicleListParameter() {
+std::vector<FleetVehicle> VehicleListParameter() {
   const ros::NodeHandle node("~");
   XmlRpcValue value;
   node.getParam("vehicles", value);
-  std::vector<Vehicle> vehicles;
+  std::vector<FleetVehicle> vehicles;
   if (value.getType() == XmlRpcValue::TypeString) {
     std::istringstream words{std::string(value)};
     for (std::string word; words >> word;) {
@@ -104,7 +104,7 @@ std::vector<Vehicle> VehicleListParameter() {
   return vehicles;
 }
 
-int IndexOf(const std::vector<Vehicle>& vehicles, long id) {
+int IndexOf(const std::vector<FleetVehicle>& vehicles, long id) {
   for (std::size_t i = 0; i < vehicles.size(); ++i) {
     if (vehicles[i].id == id) return static_cast<int>(i);
   }

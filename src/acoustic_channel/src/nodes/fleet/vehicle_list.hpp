@@ -6,7 +6,7 @@
 namespace stg::nodes {
 
 /// A vehicle of any simulator, as given in the parameters.
-struct Vehicle {
+struct FleetVehicle {
   std::string name;  ///< prefix of its topics: "alpha", "fleet/beta"
   int id = 0;        ///< number of the vehicle in messages
   std::string odom;  ///< topic of its odometry
@@ -18,10 +18,10 @@ struct Vehicle {
 /// a text NAME or NAME=TOPIC, or a map with `name` and optional `id` (0 to 254; default: place in
 /// the list) and `odom` (default: /NAME/odom). Throws UserError for anything else, for an empty
 /// list, and for two vehicles with the same name, id or odometry topic.
-std::vector<Vehicle> VehicleListParameter();
+std::vector<FleetVehicle> VehicleListParameter();
 
 /// The index of the vehicle with this id; kNobody: there is none.
 inline constexpr int kNobody = -2;
-int IndexOf(const std::vector<Vehicle>& vehicles, long id);
+int IndexOf(const std::vector<FleetVehicle>& vehicles, long id);
 
 }  // namespace stg::nodes

@@ -135,7 +135,7 @@ class JointFilter {
   double last_nis() const { return nis_; }
 
  private:
-  struct Observer {
+  struct Reckoner {
     int id = -1;
     TimeNs heard = 0;
     bool adrift = true;
@@ -200,7 +200,7 @@ class JointFilter {
   int first_clock_, n_;             // clocks are the last states
   TimeNs now_ = 0;
   double nis_ = 0.0;
-  std::vector<Observer> observers_;  // [slots]
+  std::vector<Reckoner> observers_;  // [slots]
   std::vector<double> x_, P_;        // [n], [n, n]
 };
 

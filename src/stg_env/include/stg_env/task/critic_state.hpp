@@ -15,11 +15,11 @@ inline constexpr int kVehicleNumbers = 5 * 3 + 4;
 /// of depth, and age.
 inline constexpr int kEstimateNumbers = 1 + 3 + 3;
 /// Numbers of one target: position, velocity.
-inline constexpr int kTargetNumbers = 2 * 3;
+inline constexpr int kTargetStateNumbers = 2 * 3;
 
 inline int CriticStateSize(const RunConfig& run, const dynamics::WorldConfig& world) {
   const int of_vehicle = kVehicleNumbers + (world.sea.open ? kEstimateNumbers : 0);
-  return of_vehicle * run.agents + kTargetNumbers * world.target.count;
+  return of_vehicle * run.agents + kTargetStateNumbers * world.target.count;
 }
 
 /// Writes the numbers of an AUV's estimate. @param scale 1 / near_scale_m
