@@ -16,8 +16,10 @@ class Option;
 namespace stg {
 
 namespace config {
+struct EnumRef;
+struct Field;
 class Table;
-}
+}  // namespace config
 
 /// The options and arguments of a program, with a help page. CLI11 parses them. Its headers take
 /// seconds to compile, so only command_line.cpp includes them.
@@ -38,11 +40,13 @@ class CommandLine {
     Option& Values(int count);    ///< exactly so many values follow
     Option& OneValuePerUse();     ///< it may be given several times, with one value each time
     Option& SplitAt(char comma);  ///< one value may contain several, separated by this character
+    Option& Needs(const std::string& name);   ///< refused without that option, declared before
     Option& Group(const std::string& title);  ///< part of the help page
 
    private:
     friend class CommandLine;
-    explicit Option(CLI::Option* option) : option_(option) {}
+    Option(CLI::App* app, CLI::Option* option) : app_(app), option_(option) {}
+    CLI::App* app_;
     CLI::Option* option_;
   };
 
@@ -54,9 +58,15 @@ class CommandLine {
 
   /// @param name "--name" for an option, "name" for an argument without a name
   Option Add(const std::string& name, Target target, const std::string& meaning);
+  /// An option with one of the names. The help lists them and shows the default.
+  Option Add(const std::string& name, const config::EnumRef& choice, const std::string& meaning);
   /// Adds an option "--path VALUE" for each field of the table. The value of a flag may be omitted.
-  /// The table must exist until the command line is parsed.
+  /// An option of a thing that was not chosen is refused. The table must exist until the command
+  /// line is parsed.
   void Add(const config::Table& table);
+  /// Refuses an option, with or without a value. The help does not show it.
+  /// @param why the end of the message "--name: why"
+  void Refuse(const std::string& name, const std::string& why);
   /// Adds the option --plugin. It loads the named library while the command line is parsed.
   void AddPlugins();
 
@@ -72,8 +82,11 @@ class CommandLine {
   int Run(int argc, char** argv, const std::function<int()>& body);
 
  private:
+  void RefuseUnread() const;
+
   std::string program_;
   std::unique_ptr<CLI::App> app_;
+  std::vector<const config::Field*> fields_;  ///< of all tables
 };
 
 /// Loads the libraries that --plugin names, before the command line is parsed. A program calls it

@@ -1,6 +1,7 @@
 #include "auv_common/command_line.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <type_traits>
@@ -62,6 +63,11 @@ CommandLine::Option& CommandLine::Option::SplitAt(char comma) {
   return *this;
 }
 
+CommandLine::Option& CommandLine::Option::Needs(const std::string& name) {
+  option_->needs(app_->get_option(name));
+  return *this;
+}
+
 CommandLine::Option& CommandLine::Option::Group(const std::string& title) {
   option_->group(title);
   return *this;
@@ -78,20 +84,33 @@ CommandLine::Option CommandLine::Add(const std::string& name, Target target,
       [&](auto* value) {
         using Value = std::remove_pointer_t<decltype(value)>;
         if constexpr (std::is_same_v<Value, bool>) {
-          return Option(app_->add_flag(name, *value, meaning));
+          return Option(app_.get(), app_->add_flag(name, *value, meaning));
         } else {
           CLI::Option* option = app_->add_option(name, *value, meaning);
           if constexpr (std::is_same_v<Value, std::uint64_t>) {
             option->check(CLI::Validator([](std::string& text) { return RefuseSign(text); }, ""));
           }
-          return Option(option);
+          return Option(app_.get(), option);
         }
       },
       target);
 }
 
+CommandLine::Option CommandLine::Add(const std::string& name, const config::EnumRef& choice,
+                                     const std::string& meaning) {
+  const auto take = [choice](const std::string& text) {
+    const auto found = std::find(choice.names.begin(), choice.names.end(), text);
+    choice.set(static_cast<int>(found - choice.names.begin()));
+  };
+  CLI::Option* option = app_->add_option_function<std::string>(name, take, meaning);
+  option->check(CLI::IsMember(choice.names))
+      ->default_str(choice.names.at(static_cast<std::size_t>(choice.get())));
+  return Option(app_.get(), option);
+}
+
 void CommandLine::Add(const config::Table& table) {
   for (const config::Field& option : table.fields()) {
+    fields_.push_back(&option);
     const auto take = [&option](const std::string& text) {
       const auto message = config::ParseText(option, text);
       if (message) throw CLI::ValidationError("--" + option.path, *message);
@@ -106,6 +125,23 @@ void CommandLine::Add(const config::Table& table) {
     } else {
       declared->type_name(range)->default_str(value);
     }
+  }
+}
+
+void CommandLine::Refuse(const std::string& name, const std::string& why) {
+  app_->add_option_function<std::string>(
+          name, [name, why](const std::string&) { throw CLI::ValidationError(name, why); }, "")
+      ->expected(0, 1)
+      ->default_str("")
+      ->group("");
+}
+
+void CommandLine::RefuseUnread() const {
+  for (const config::Field* field : fields_) {
+    const std::string name = "--" + field->path;
+    const config::Owner* owner = field->Unchosen();
+    if (owner == nullptr || app_->count(name) == 0) continue;
+    throw CLI::ValidationError(name, owner->WhyUnread("this command", "--"));
   }
 }
 
@@ -135,6 +171,7 @@ int CommandLine::Count(const std::string& name) const {
 std::optional<int> CommandLine::Parse(int argc, char** argv) {
   try {
     app_->parse(argc, argv);
+    RefuseUnread();
     return {};
   } catch (const CLI::ParseError& error) {
     return app_->exit(error) == 0 ? 0 : 2;

@@ -7,11 +7,26 @@
 #include "key_path.hpp"
 
 namespace stg::config {
+namespace {
+
+/// 'a' or 'b'; "none" if there are no names.
+std::string QuotedNames(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "'" : " or '") + name + "'";
+  return text.empty() ? "none" : text;
+}
+
+}  // namespace
 
 bool Owner::IsChosen() const {
   const std::vector<std::string> choice = chosen();
   return std::find_first_of(choice.begin(), choice.end(), names.begin(), names.end()) !=
          choice.end();
+}
+
+std::string Owner::WhyUnread(const std::string& chooser, const std::string& prefix) const {
+  return "belongs to the " + kind + " " + QuotedNames(names) + "; " + chooser + " chose " +
+         QuotedNames(chosen()) + " (" + prefix + key + ")";
 }
 
 const Owner* Field::Unchosen() const {

@@ -17,13 +17,6 @@ std::string Where(const std::string& path, int line) {
   return path + ":" + std::to_string(line) + ": ";
 }
 
-/// 'a' or 'b'; "none" if there are no names.
-std::string QuotedNames(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "'" : " or '") + name + "'";
-  return text.empty() ? "none" : text;
-}
-
 /// Text of a user without quotes, shortened.
 std::string Shortened(const std::string& text) {
   const std::string quoted = Quoted(text);
@@ -237,9 +230,7 @@ void Loader::RefuseUnread() const {
     if (set == origin_.end() || owner == nullptr) continue;
     const auto choice = origin_.find(owner->key);
     if (choice != origin_.end() && set->second.layer < choice->second.layer) continue;
-    throw UserError(set->second.where + field.path + ": belongs to the " + owner->kind + " " +
-                    QuotedNames(owner->names) + "; this configuration chose " +
-                    QuotedNames(owner->chosen()) + " (" + owner->key + ")");
+    throw UserError(set->second.where + field.path + ": " + owner->WhyUnread("this configuration"));
   }
 }
 

@@ -138,6 +138,9 @@ struct Owner {
   std::function<std::vector<std::string>()> chosen;
 
   bool IsChosen() const;
+  /// For messages: "belongs to the KIND 'a' or 'b'; CHOOSER chose 'c' (KEY)".
+  /// @param chooser e.g. "this configuration" @param prefix of the key, e.g. "--"
+  std::string WhyUnread(const std::string& chooser, const std::string& prefix = "") const;
 };
 
 /// One key of a file and the member of the struct that it fills.
