@@ -37,7 +37,20 @@ void Loader::Apply(const Source& source) {
   ApplyFile(source.file);
   ++layer_;
   for (const std::string& overlay : source.overlays) ApplyOverlay(overlay);
-  for (const std::string& text : source.overrides) ApplyOverride(text);
+  ApplyOverrides(source.overrides);
+}
+
+void Loader::ApplyOverrides(const std::vector<std::string>& overrides) {
+  std::map<std::string, std::string> given;
+  for (const std::string& text : overrides) {
+    const std::string key = SplitOverride(text).first;
+    const auto [earlier, first] = given.emplace(key, text);
+    if (!first && key != "plugins") {  // each list of plugins has an effect
+      throw UserError(OverrideOrigin(text) + ": " + Shortened(key) + ": is also set by " +
+                      OverrideOrigin(earlier->second) + "; leave out one of the two");
+    }
+    ApplyOverride(text);
+  }
 }
 
 void Loader::ApplyText(const std::string& text, const std::string& origin) {

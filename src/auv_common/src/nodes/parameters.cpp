@@ -5,6 +5,7 @@
 #include <ros/param.h>
 #include <ros/this_node.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <sstream>
@@ -117,9 +118,22 @@ bool SimulatedTimeParameter() {
 
 config::Source ScenarioSource() {
   std::vector<std::string> overrides = TextsParameter("overrides", Reach::kRun);
+  const auto given = [&overrides](const std::string& start) {
+    return std::find_if(overrides.begin(), overrides.end(),
+                        [&start](const std::string& text) { return text.rfind(start, 0) == 0; });
+  };
+  // If the overrides state a number, RequireAgents compares the two.
   const int agents = IntegerParameter("agents", 0, 0, 255, Reach::kRun);
-  if (agents > 0) overrides.insert(overrides.begin(), "agents=" + std::to_string(agents));
-  overrides.emplace_back("mode=acoustic");
+  if (agents > 0 && given("agents=") == overrides.end()) {
+    overrides.push_back("agents=" + std::to_string(agents));
+  }
+  const std::string mode = "mode=acoustic";
+  if (const auto other = given("mode="); other == overrides.end()) {
+    overrides.push_back(mode);
+  } else if (*other != mode) {
+    throw UserError("parameter overrides: '" + *other + "': a run of nodes has always the " +
+                    "mode acoustic");
+  }
   for (const std::string& library : TextsParameter("plugins", Reach::kRun)) {
     overrides.push_back("plugins=[\"" + library + "\"]");
   }

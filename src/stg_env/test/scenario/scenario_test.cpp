@@ -140,14 +140,31 @@ TEST_F(ScenarioInput, DuplicateKeyNamesBothLines) {
                          std::to_string(line - 2));
 }
 
-TEST_F(ScenarioInput, OverridesAreAppliedInOrderAfterOverlays) {
+TEST_F(ScenarioInput, OverridesAreAppliedAfterOverlays) {
   const std::string base = Write("base.yaml", ToYaml(Scenario{}));
   const std::string overlay = Write("overlay.yaml", "agents: 6\n");
   EXPECT_EQ(LoadScenario(base, {overlay}).run.agents, 6);
-  EXPECT_EQ(LoadScenario(base, {overlay}, {"agents=7", "agents=8"}).run.agents, 8);
+  EXPECT_EQ(LoadScenario(base, {overlay}, {"agents=7"}).run.agents, 7);
   const Scenario s = LoadScenario(base, {}, {"reward.band_m=[0.011, 0.014]", "mode=truth"});
   EXPECT_EQ(s.reward.band_m.lo, 0.011);
   EXPECT_EQ(s.mode, InformationMode::kTruth);
+}
+
+TEST_F(ScenarioInput, AKeyThatTwoOverridesSetIsRefused) {
+  const std::string base = Write("base.yaml", ToYaml(Scenario{}));
+  const std::vector<std::string> overrides = {"agents=7", "seed=1", "agents=8"};
+  const std::string expected =
+      "--set 'agents=8': agents: is also set by --set 'agents=7'; leave out one of the two";
+  Scenario scenario;
+  for (const auto& set : {std::function<void()>([&] { LoadScenario(base, {}, overrides); }),
+                          std::function<void()>([&] { config::Override(&scenario, overrides); })}) {
+    try {
+      set();
+      ADD_FAILURE();
+    } catch (const UserError& error) {
+      EXPECT_EQ(std::string(error.what()), expected);
+    }
+  }
 }
 
 TEST_F(ScenarioInput, RefusedOverrideIsNamed) {

@@ -16,8 +16,8 @@
 /// A file either states every key, or names another file with `base: <file>` (relative to itself)
 /// and states the differences. Overlays (files with some of the keys) and `key.path=value`
 /// overrides are applied after it, in order. UserError with file, line and key is thrown for an
-/// unknown or missing key (except Table::AddOptional), for a wrong type, and for a value that is
-/// not finite or out of range.
+/// unknown or missing key (except Table::AddOptional), for a wrong type, for a value that is not
+/// finite or out of range, and for two overrides of one key.
 namespace stg::config {
 
 /// The sources of a configuration.
@@ -53,8 +53,9 @@ class Loader {
   /// that are not in the map keep their values. This is for files of other programs that contain a
   /// described section.
   void ApplyPart(const YamlTree& map, const std::string& prefix, const std::string& file);
-  /// "key.path=value".
-  void ApplyOverride(const std::string& text);
+  /// A list of "key.path=value". Throws UserError if the list has a key twice, because the first
+  /// value would have no effect.
+  void ApplyOverrides(const std::vector<std::string>& overrides);
   /// Call it after everything was applied. Throws UserError for a key of a thing that was not
   /// chosen, if the key stands in the file that chose another thing, or in a file, overlay or
   /// override on top of it. Keys that a base states for the thing that the base itself chose are
@@ -65,6 +66,7 @@ class Loader {
 
  private:
   using Keys = std::set<std::string>;
+  void ApplyOverride(const std::string& text);
   void ApplyFile(const std::string& path);
   void ApplyOverlay(const std::string& path);
   void ApplyBase(const std::string& path, const YamlTree::Entry& entry);
@@ -138,7 +140,7 @@ void Override(Config* config, const std::vector<std::string>& overrides) {
   Table table;
   Describe(config, &table);
   Loader loader(table, Scope::kWhole);
-  for (const std::string& text : overrides) loader.ApplyOverride(text);
+  loader.ApplyOverrides(overrides);
   loader.RefuseUnread();
 }
 
