@@ -1,5 +1,6 @@
 #include "auv_common/config/options.hpp"
 
+#include <set>
 #include <sstream>
 
 #include "auv_common/config/value.hpp"
@@ -10,12 +11,16 @@
 namespace stg::config {
 
 void ApplyPairs(const Table& table, const std::string& pairs, const std::string& whole) {
-  std::istringstream items(pairs);
+  const std::string where = "'" + whole + "': ";
+  std::set<std::string> given;
+  // A comma at the end makes getline return the text after the last comma, even if it is empty.
+  std::istringstream items(pairs + ",");
   for (std::string item; std::getline(items, item, ',');) {
+    if (item.empty()) throw UserError(where + "a constant is missing after a colon or comma");
     const std::size_t equals = item.find('=');
     const std::string key = item.substr(0, equals);
     const std::string value = equals == std::string::npos ? "" : item.substr(equals + 1);
-    const std::string where = "'" + whole + "': ";
+    if (!given.insert(key).second) throw UserError(where + key + ": given twice");
     const Field* field = table.Find(key);
     if (field == nullptr) {
       std::vector<std::string> keys;

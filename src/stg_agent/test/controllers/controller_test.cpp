@@ -62,7 +62,9 @@ TEST(Controllers, ANameMayCarryConstants) {
 
 TEST(Controllers, AWrongConstantIsRefusedAndTheMessageQuotesIt) {
   for (const char* bad : {"pursuit:gain", "pursuit:gain=", "pursuit:gain=2x", "pursuit:gain=nan",
-                          "pursuit:gain=-1", "pursuit:cap=1.1", "pursuit:speed=1", "idle:gain=1"}) {
+                          "pursuit:gain=-1", "pursuit:cap=1.1", "pursuit:speed=1", "idle:gain=1",
+                          "pursuit:", "encircle:", "pursuit:gain=1,", "pursuit:,gain=1",
+                          "pursuit:gain=1,,cap=1", "pursuit:gain=1,gain=1"}) {
     EXPECT_THROW(MakeController(bad), UserError) << bad;
   }
   EXPECT_EQ(ErrorOf("pursuit:gain=2x"), "'pursuit:gain=2x': gain: expected a number, found '2x'");
@@ -70,6 +72,9 @@ TEST(Controllers, AWrongConstantIsRefusedAndTheMessageQuotesIt) {
   EXPECT_EQ(ErrorOf("pursuit:speed=1"), "'pursuit:speed=1': no such constant: speed");
   EXPECT_EQ(ErrorOf("pursuit:gian=2"),
             "'pursuit:gian=2': no such constant: gian; did you mean gain?");
+  EXPECT_EQ(ErrorOf("pursuit:gain=1,gain=3"), "'pursuit:gain=1,gain=3': gain: given twice");
+  EXPECT_EQ(ErrorOf("pursuit:gain=1,"),
+            "'pursuit:gain=1,': a constant is missing after a colon or comma");
 }
 
 TEST(Controllers, PacksAndScalarsAgreeBitForBitInBothInterfaces) {
