@@ -28,16 +28,19 @@ bool IsFolder(const fs::path& path) {
 }
 
 /// Names of the YAML files in a folder that begin with `prefix`, without this prefix.
-std::string ListNames(const fs::path& folder, const std::string& prefix) {
-  std::vector<std::string> names;
+std::set<std::string> NamesIn(const fs::path& folder, const std::string& prefix) {
+  std::set<std::string> names;
   std::error_code error;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
     const std::string stem = it->path().stem().string();
     if (it->path().extension() == ".yaml" && stem.rfind(prefix, 0) == 0) {
-      names.push_back(stem.substr(prefix.size()));
+      names.insert(stem.substr(prefix.size()));
     }
   }
-  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::string ListOf(const std::set<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
   return text.empty() ? "none" : text;
@@ -129,22 +132,23 @@ Source NamedSource(const std::string& folder, const std::string& scenario,
   std::error_code error;
   if (!IsPath(scenario) && !fs::exists(file, error)) {
     throw UserError("scenario " + Quoted(scenario) + ": no file " + file.string() + "; there are " +
-                    ListNames(root, ""));
+                    ListOf(NamesIn(root, "")));
   }
   if (condition == "nominal") return {file.string(), {}, overrides};
   if (IsPath(condition)) return {file.string(), {condition}, overrides};
-  std::string there = "nominal";
+  std::set<std::string> others;
   for (const std::string& name : NamesOfBases(file.string())) {
     const fs::path own = root / "conditions" / name;
     const fs::path overlay = own / (condition + ".yaml");
     if (fs::exists(overlay, error)) return {file.string(), {overlay.string()}, overrides};
-    if (IsFolder(own)) there += ", " + ListNames(own, "");
+    others.merge(NamesIn(own, ""));
   }
   const std::string stage = FindScalar(file.string(), "reset.stage").value_or("medium") + "_";
   const fs::path overlay = root / "conditions" / (stage + condition + ".yaml");
   if (!fs::exists(overlay, error)) {
-    throw UserError("condition " + Quoted(condition) + ": no file " + overlay.string() +
-                    "; there are " + there + ", " + ListNames(root / "conditions", stage));
+    others.merge(NamesIn(root / "conditions", stage));
+    throw UserError("condition " + Quoted(condition) + ": the scenario " + Quoted(scenario) +
+                    " has no condition of this name; it has nominal, " + ListOf(others));
   }
   return {file.string(), {overlay.string()}, overrides};
 }

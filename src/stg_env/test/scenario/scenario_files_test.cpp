@@ -184,7 +184,18 @@ TEST(NamedScenario, UnknownNamesListWhatThereIs) {
     return std::string();
   };
   EXPECT_NE(error("mediun", "nominal").find("medium, medium_release"), std::string::npos);
-  EXPECT_NE(error("medium", "storm").find("nominal, combined_stress"), std::string::npos);
+  EXPECT_EQ(
+      error("medium", "storm"),
+      "condition 'storm': the scenario 'medium' has no condition of this name; it has nominal, "
+      "combined_stress, degraded_communication, far_initialization, fast_target, "
+      "limited_sensing");
+  // The scenario's own conditions and those of its bases and its stage, each once.
+  const std::string many = error("many8", "storm");
+  for (const char* name : {"combined_stress", "unlabelled", "strong_current"}) {
+    const std::size_t first = many.find(name);
+    EXPECT_NE(first, std::string::npos) << many;
+    EXPECT_EQ(many.find(name, first + 1), std::string::npos) << many;
+  }
 }
 
 TEST(ScenarioFolder, IsFoundByVariableAndOnThePackagePath) {
