@@ -66,6 +66,19 @@ void DecideSlice(const agent::Decider& c, const VectorEnv::Slice& slice, const f
 
 }  // namespace
 
+void ReadTruth(agent::Decider* decider, InformationMode mode) {
+  if (decider->builtin == nullptr) {
+    throw UserError("privileged: only a built-in controller can read true states, but '" +
+                    decider->name + "' is a policy");
+  }
+  if (mode == InformationMode::kTruth) {
+    throw UserError(
+        "privileged: the scenario has the mode truth, in which each controller reads true states "
+        "anyway");
+  }
+  decider->privileged = true;
+}
+
 void Decide(const agent::Decider& c, const VectorEnv& env, const float* observations,
             double* actions) {
   for (const VectorEnv::Slice& slice : env.slices()) DecideSlice(c, slice, observations, actions);

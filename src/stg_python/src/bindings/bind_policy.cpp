@@ -119,7 +119,7 @@ py::dict Evaluate(const std::string& policy, const Scenario& scenario, int episo
   {
     const WithoutGil release;
     agent::Decider controller = agent::MakeDecider(policy, scenario.model());
-    controller.privileged = privileged;
+    if (privileged) env::ReadTruth(&controller, scenario.mode);
     WorkerPool pool(std::min(workers, episodes));
     env::EvaluationOptions options;
     options.episodes = episodes;

@@ -166,11 +166,11 @@ int BoundEnv::StepAgents(const py::dict& actions) {
 }
 
 const agent::Decider& BoundEnv::ControllerOf(const std::string& name, bool privileged) {
-  if (controller_.name != name) {
-    const EnvPool& pool = *pool_;
-    controller_ = agent::MakeDecider(name, pool.parts().front().envs->scenario().model());
-  }
-  controller_.privileged = privileged;
+  const EnvPool& pool = *pool_;
+  const Scenario& scenario = pool.parts().front().envs->scenario();
+  if (controller_.name != name) controller_ = agent::MakeDecider(name, scenario.model());
+  controller_.privileged = false;
+  if (privileged) env::ReadTruth(&controller_, scenario.mode);
   return controller_;
 }
 

@@ -43,7 +43,7 @@ class Collector::Unit {
     log_prob_.resize(rows);
     if (imitation != nullptr && !imitation->controller.empty()) {
       teacher_ = agent::MakeDecider(imitation->controller, make_env.model());
-      teacher_->privileged = imitation->privileged;
+      if (imitation->privileged) env::ReadTruth(&*teacher_, make_env.mode());
       teacher_actions_.resize(actions_.size());
       taught_.resize(actions_.size());
     }

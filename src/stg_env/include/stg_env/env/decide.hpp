@@ -13,4 +13,8 @@ namespace stg::env {
 void Decide(const agent::Decider& decider, const VectorEnv& env, const float* observations,
             double* actions);
 
+/// Lets a built-in controller read true states, also in acoustic mode. Throws UserError if this has
+/// no effect, for a policy and in truth mode.
+void ReadTruth(agent::Decider* decider, InformationMode mode);
+
 }  // namespace stg::env

@@ -156,8 +156,9 @@ class EnvFactory {
   VectorEnv Make(const VectorEnvOptions& options) const { return {mix_, options}; }
   /// Number of scenarios of the mix.
   int scenarios() const { return static_cast<int>(mix_.size()); }
-  /// The agents' model of the first scenario.
+  /// The agents' model of the first scenario, and its mode.
   agent::AgentModel model() const { return mix_.front().model(); }
+  InformationMode mode() const { return mix_.front().mode; }
 
  private:
   std::vector<Scenario> mix_;
