@@ -46,6 +46,20 @@ void Print(const char* what, const MotionError& e) {
               1e2 * e.position_share, e.position_line);
 }
 
+/// Throws UserError for an override that has no effect here.
+void RequireKeysOfVehicle(const std::vector<std::string>& overrides) {
+  const std::string vehicle = "vehicle.", integrator = vehicle + "integrator=";
+  for (const std::string& text : overrides) {
+    if (text.rfind(vehicle, 0) != 0) {
+      throw stg::UserError("--set '" + text + "': check_vehicle reads only the keys " + vehicle +
+                           "* of a scenario");
+    }
+    if (text.rfind(integrator, 0) == 0) {
+      throw stg::UserError("--set '" + text + "': use the option --integrator in place of this key");
+    }
+  }
+}
+
 }  // namespace
 
 /// Replays recorded vehicle motions. The last line is JSON. Exit status 1: beyond the tolerance; 2:
@@ -60,7 +74,7 @@ int main(int argc, char** argv) {
   std::string file, scenario;
   std::vector<std::string> overrides;
   double tolerance = 0.01, dt_s = 0.02;
-  std::string integrator = "semi_implicit";
+  auto integrator = stg::dynamics::Integrator::kSemiImplicit;
   bool over_ground = false;
   app.Add("file", &file,
           "CSV: rpm,rudder_deg,stern_deg,Vc,beta_deg,t,x,y,z,phi,theta,psi,u,v,w,p,q,r")
@@ -68,13 +82,14 @@ int main(int argc, char** argv) {
   app.Add("--tolerance", &tolerance, "largest allowed error, as a share of range or distance")
       .ShowDefault();
   app.Add("--dt", &dt_s, "largest physics step [s]").ShowDefault();
-  app.Add("--integrator", &integrator,
-          "semi_implicit, as in the public model of the shipped motions, or rk4")
-      .ShowDefault()
-      .OneOf({"semi_implicit", "rk4"});
+  app.Add("--integrator", stg::config::Enum(&integrator, stg::dynamics::IntegratorNames()),
+          "used in place of the scenario's vehicle.integrator; the default is that of the public "
+          "model of the shipped motions");
   app.Add("--scenario", &scenario,
           "use the torpedo of this scenario (name or file); default: the REMUS 100");
-  app.Add("--set", &overrides, "scenario override key.path=value, for example vehicle.substeps=2");
+  app.Add("--set", &overrides,
+          "override vehicle.KEY=value of the scenario, for example vehicle.substeps=2")
+      .Needs("--scenario");
   app.Add("--advance-over-ground", &over_ground,
           "propeller inflow from the speed over ground, as in the public model");
   app.AddPlugins();
@@ -82,6 +97,7 @@ int main(int argc, char** argv) {
     stg::CheckOption("--tolerance", tolerance, 0.0, 1e6);
     stg::CheckOption("--dt", dt_s, 1e-4, 1.0);
     stg::dynamics::VehicleConfig vehicle;
+    RequireKeysOfVehicle(overrides);
     if (!scenario.empty()) {
       const auto source =
           stg::config::NamedSource(stg::config::ScenarioFolder(), scenario, "nominal", overrides);
@@ -95,11 +111,8 @@ int main(int argc, char** argv) {
                              ", but recorded motions are those of a torpedo (--set "
                              "vehicle.model=torpedo)");
       }
-    } else if (!overrides.empty()) {
-      throw stg::UserError("--set needs --scenario");
     }
-    vehicle.integrator = integrator == "rk4" ? stg::dynamics::Integrator::kRk4
-                                             : stg::dynamics::Integrator::kSemiImplicit;
+    vehicle.integrator = integrator;
     if (over_ground) vehicle.torpedo.advance_over_ground = true;
     std::vector<RecordedMotion> still = stg::dynamics::LoadMotions(file);
     const auto begin_of_current = std::stable_partition(

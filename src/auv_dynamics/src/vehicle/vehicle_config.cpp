@@ -64,6 +64,8 @@ void DescribeFullyActuated(VehicleConfig* c, config::Table* t) {
 
 }  // namespace
 
+std::vector<std::string> IntegratorNames() { return {"semi_implicit", "rk4"}; }
+
 void Describe(VehicleConfig* c, config::Table* t) {
   const std::string axes = "surge sway heave roll pitch yaw";
   t->Section("vehicle");
@@ -81,7 +83,7 @@ void Describe(VehicleConfig* c, config::Table* t) {
          "clip body velocity and rates to these limits after every step");
   t->Add("max_tau", config::Numbers(&c->max_tau), config::Positive(1e6), "N, N m, body",
          "actuator limits, " + axes);
-  t->Add("integrator", config::Enum(&c->integrator, {"semi_implicit", "rk4"}), config::kNone, "-",
+  t->Add("integrator", config::Enum(&c->integrator, IntegratorNames()), config::kNone, "-",
          "time integration: the release's step, or Runge-Kutta of order 4");
   t->Add("substeps", &c->substeps, config::Within(1, 1000), "-",
          "integrator steps per physics step");

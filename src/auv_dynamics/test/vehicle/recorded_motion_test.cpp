@@ -138,7 +138,14 @@ TEST_F(MotionFile, ToolRefusesWhatItCannotCompareWith) {
   const std::string scenarios = STG_SHIPPED_TERRAIN "/../scenarios/";
   EXPECT_EQ(Run(shipped + " --scenario '" + scenarios + "medium.yaml'"), 2);
   EXPECT_NE(err_.find("has the model fully_actuated"), std::string::npos) << err_;
-  EXPECT_EQ(Run(shipped + " --scenario '" + scenarios + "field.yaml'"), 0) << err_;
+  const std::string field = shipped + " --scenario '" + scenarios + "field.yaml'";
+  EXPECT_EQ(Run(field), 0) << err_;
+  for (const auto& [options, message] :
+       {std::pair(" --set sensing.range_m=3", "check_vehicle reads only the keys vehicle.*"),
+        std::pair(" --set vehicle.integrator=rk4", "use the option --integrator in place")}) {
+    EXPECT_EQ(Run(field + options), 2);
+    EXPECT_NE(err_.find(message), std::string::npos) << err_;
+  }
 }
 
 TEST_F(MotionFile, ToolEndsWithItsResultUnderAnyNameAndFailsWhereItCannotBeWritten) {
@@ -168,6 +175,7 @@ TEST_F(MotionFile, ToolReportsByColumnAndByExitStatus) {
   EXPECT_EQ(Run("'" + folder_ + "/none.csv'"), 2);
   EXPECT_NE(err_.find("none.csv: no such file"), std::string::npos);
   EXPECT_EQ(Run(shipped + " --set vehicle.substeps=2"), 2);
+  EXPECT_NE(err_.find("--set requires --scenario"), std::string::npos) << err_;
 }
 
 }  // namespace

@@ -13,6 +13,8 @@ namespace stg::dynamics {
 
 /// How the equations of motion are stepped; the release's is semi-implicit Euler.
 enum class Integrator { kSemiImplicit, kRk4 };
+/// Their names in files and on command lines, in the same order.
+std::vector<std::string> IntegratorNames();
 
 /// Added-mass part of C(nu); the rigid-body part is always there.
 enum class AddedMassCoriolis { kFull, kNoMunk, kOff };
