@@ -84,10 +84,36 @@ class Vector(unittest.TestCase):
             {"overrides": SHORT, "condition": ["nominal", "fast_target"]},
             {"overrides": SHORT, "rewards": "agent"},
             {"overrides": SHORT, "copy": False},
-            {"overrides": SHORT, "curriculum": True},
+            {"overrides": {**SHORT, "reset.curriculum": True}, "curriculum": True},
         ):
             with self.subTest(options):
                 contract.check_vector(lambda options=options: stg.vector_env("medium", 9, **options))
+
+    def test_a_curriculum_is_followed_only_where_there_is_one_and_it_is_asked_for(self):
+        on = {**SHORT, "reset.curriculum": True}
+        with self.assertRaisesRegex(stg.UserError, "curriculum: the scenario has none"):
+            stg.vector_env("medium", 4, overrides=SHORT, curriculum=True)
+        with self.assertRaisesRegex(stg.UserError, "True follows it in training, False starts all"):
+            stg.vector_env("medium", 4, overrides=on)
+        with self.assertRaisesRegex(stg.UserError, "the option `curriculum` of vector_env"):
+            stg.parallel_env("medium", overrides=on)
+        starts = [
+            stg.vector_env("medium", 4, overrides=on, curriculum=asked, seed=1).reset()[0]
+            for asked in (True, False)
+        ]
+        self.assertFalse(np.array_equal(*starts))
+
+    def test_true_states_are_refused_where_they_have_no_effect(self):
+        env = stg.vector_env("medium", 4, overrides={**SHORT, "mode": "truth"})
+        env.reset(seed=0)
+        with self.assertRaisesRegex(stg.UserError, "privileged: .* has the mode truth"):
+            env.controller_actions("pursuit", privileged=True)
+        with self.assertRaisesRegex(stg.UserError, "privileged: .* has the mode truth"):
+            stg.evaluate("pursuit", "medium", overrides={"mode": "truth"}, episodes=1, privileged=True)
+
+    def test_a_key_that_two_overrides_set_is_refused(self):
+        with self.assertRaisesRegex(stg.UserError, "agents: is also set by"):
+            stg.load_scenario("medium", overrides=["agents=3", "agents=4"])
 
     def test_rewards_of_the_team_are_the_mean_of_the_agents(self):
         env = stg.vector_env("medium", 5)

@@ -45,7 +45,7 @@ class VectorEnv:
 
     def __init__(
         self, mix: Sequence[Scenario], num_envs: int, workers: int = 1, seed: int = 0,
-        curriculum: bool = False, stagger: bool = False,
+        curriculum: bool | None = None, stagger: bool = False,
     ) -> None: ...  # fmt: skip
     def bind(self, arrays: dict[str, np.ndarray | None]) -> None: ...
     def restart_at(self, k: int) -> None: ...

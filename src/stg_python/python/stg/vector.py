@@ -76,7 +76,7 @@ class VectorEnv(_Base):
 
     def __init__(
         self, scenario="medium", num_envs=4, *, condition="nominal", overrides=None, workers=1,
-        seed=0, rewards="team", copy=True, arrays=None, curriculum=False, stagger=False,
+        seed=0, rewards="team", copy=True, arrays=None, curriculum=None, stagger=False,
         render_mode=None,
     ):  # fmt: skip
         """See vector_env."""
@@ -315,7 +315,8 @@ def vector_env(scenario="medium", num_envs=4, **options):
                   overwrites
     arrays        {name: array} of the caller for the results (names of VectorEnv.arrays,
                   C-contiguous float32, truncated bool); the returned arrays are then views
-    curriculum    easier starts first, if the scenario has a curriculum
+    curriculum    needed if the scenario has one (reset.curriculum). True: easier starts first;
+                  False: all episodes start at reset.stage
     stagger       first episodes of different lengths, so that not all end together
     render_mode   None or "rgb_array"
     """

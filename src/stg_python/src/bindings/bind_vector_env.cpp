@@ -1,25 +1,49 @@
 #include <pybind11/stl.h>
 
+#include <algorithm>
+#include <optional>
+
+#include "auv_common/error.hpp"
 #include "bind.hpp"
 #include "bound_env.hpp"
 
 namespace stg::python {
+namespace {
+
+/// True if the resets follow the curriculum. Throws UserError if this is not decided, or without
+/// effect.
+bool FollowsCurriculum(const std::vector<Scenario>& mix, const std::optional<bool>& given) {
+  const bool there = std::any_of(mix.begin(), mix.end(),
+                                 [](const Scenario& s) { return s.world.reset.curriculum; });
+  if (there && !given) {
+    throw UserError(
+        "reset.curriculum: the scenario has a curriculum, but the option `curriculum` of "
+        "vector_env "
+        "is not given: True follows it in training, False starts all episodes at reset.stage");
+  }
+  if (given.value_or(false) && !there) {
+    throw UserError("curriculum: the scenario has none; reset.curriculum=true turns it on");
+  }
+  return given.value_or(false);
+}
+
+}  // namespace
 
 void BindVectorEnv(py::module_& module) {
   module.attr("MIX_BLOCK") = env::kMixBlock;
   py::class_<BoundEnv>(module, "VectorEnv",
                        "Environments that write to arrays of the caller; see the package stg.")
       .def(py::init([](const std::vector<Scenario>& mix, int envs, int workers, std::uint64_t seed,
-                       bool curriculum, bool stagger) {
+                       const std::optional<bool>& curriculum, bool stagger) {
              env::VectorEnvOptions options;
              options.envs = envs;
              options.seed = seed;
-             options.curriculum = curriculum;
+             options.curriculum = FollowsCurriculum(mix, curriculum);
              options.stagger = stagger;
              return std::make_unique<BoundEnv>(mix, options, workers);
            }),
            py::arg("mix"), py::arg("num_envs"), py::arg("workers") = 1, py::arg("seed") = 0,
-           py::arg("curriculum") = false, py::arg("stagger") = false)
+           py::arg("curriculum") = py::none(), py::arg("stagger") = false)
       .def("bind", &BoundEnv::Bind, py::arg("arrays"),
            "Names the arrays that later calls write to.")
       .def("restart_at", &BoundEnv::RestartAt, py::arg("k"),
