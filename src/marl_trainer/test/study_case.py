@@ -43,8 +43,9 @@ class StudyCase(unittest.TestCase):
         self.out = os.path.join(self.folder, "out")
 
     def command(self, *arguments):
+        runs = [] if "--report-only" in arguments else ["--bin", self.folder, "--jobs", "2"]
         return ["/usr/bin/python3", REPRODUCE, "--study", self.study, "--out", self.out,
-                "--bin", self.folder, "--jobs", "2", *arguments]  # fmt: skip
+                *runs, *arguments]  # fmt: skip
 
     def reproduce(self, *arguments, **environment):
         """Runs the command without a report; returns (status, output, command lines of the stubs)."""
@@ -60,6 +61,13 @@ class StudyCase(unittest.TestCase):
             check=False,
         )
         return done.returncode, done.stdout, stub_programs.calls(self.folder)
+
+    def refused(self, what, *arguments):
+        """Expects that the command ends in one line that says `what`."""
+        status, output, calls = self.reproduce_all(*arguments)
+        self.assertEqual((status, calls), (2, []), output)
+        self.assertRegex(output.splitlines()[-1], f"^reproduce: .*{what}")
+        self.assertNotIn("Traceback", output)
 
     def path(self, *parts):
         return os.path.join(self.out, *parts)

@@ -50,9 +50,10 @@ class Flights(unittest.TestCase):
         """Runs the program; returns the finished process."""
         file = self.folder / "study.yaml"
         file.write_text(yaml.safe_dump({**STUDY, **changes}))
+        runs = [] if "--report-only" in arguments else ["--bin", str(self.folder), "--jobs", "2"]
         return subprocess.run(
             [sys.executable, str(PACKAGE / "scripts" / "reproduce"), "--study", str(file), "--out",
-             str(self.folder / "out"), "--bin", str(self.folder), "--jobs", "2", *arguments],
+             str(self.folder / "out"), *runs, *arguments],
             stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True, check=False)
 
     def rows(self):
@@ -121,7 +122,16 @@ class Flights(unittest.TestCase):
                 self.assertRegex(run.stderr, rf"^reproduce: [^\n]*{what}[^\n]*\n$")
         for option in ("--quick", "--keep", "--seeds=1"):
             run = self.reproduce(option)
-            self.assertRegex(run.stderr, r"^reproduce: --\w+: a study of flights has no trainings\n$")
+            self.assertRegex(run.stderr, r"^reproduce: --\w+: has no effect, because a study of flights has no trainings\n$")
+        run = self.reproduce("--policies", str(self.folder))
+        self.assertRegex(run.stderr, r"^reproduce: --policies: has no effect, .* in \{policies\}\n$")
+
+    def test_the_overrides_of_the_knowledge_replace_those_of_the_variant(self):
+        changed = {**STUDY, "sections": [{**STUDY["sections"][0], "variants": {"loud": ["x=1", "silent=0"]}}]}
+        cells = flight_study.plan_flights(flight_study.flight_study_from(changed, "study"), "work", "bin")
+        given = {cell.knows: cell.jobs[0].arguments for cell in cells}
+        self.assertEqual(given["own"][-4:], ["--set", "x=1", "--set", "silent=0"])
+        self.assertEqual(given["silent"][-4:], ["--set", "x=1", "--set", "silent=1"])
 
     def test_rows_of_several_trainings_have_the_deviation_over_them(self):
         policy = {"policy": "{policies}/{seed}.onnx", "seeds": [4, 6]}

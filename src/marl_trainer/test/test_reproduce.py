@@ -218,13 +218,6 @@ class Reproduce(StudyCase):
         self.assertIn("| pursuit (tuned) |", page)
         self.assertNotIn("convergence", page)
 
-    def refused(self, what, *arguments):
-        """Expects that the command ends in one line that says `what`."""
-        status, output, calls = self.reproduce_all(*arguments)
-        self.assertEqual((status, calls), (2, []), output)
-        self.assertRegex(output.splitlines()[-1], f"^reproduce: .*{what}")
-        self.assertNotIn("Traceback", output)
-
     def test_damaged_studies_are_refused_in_one_line(self):
         for text, what in (
             (STUDY + "steps: 7\n", rf"study.yaml:{STUDY.count(chr(10)) + 1}: steps: duplicate key"),

@@ -13,7 +13,7 @@ import yaml
 
 from stg_common.files import FileError
 from stg_study.files import write_atomically
-from stg_study.jobs import Flight
+from stg_study.jobs import Flight, combined
 from stg_study.study import StudyError, build, is_name
 
 SHIPPED_POLICIES = ("../../../stg_bringup/policies", "../../../../share/stg_bringup/policies")
@@ -188,7 +188,7 @@ def plan_flights(study, work, bin_dir, policies=None):
                         episodes = section.episodes or study.episodes
                         arguments = ["--scenario", scenario, "--condition", condition]
                         arguments += ["--episodes", str(episodes), "--seed", str(study.seed)]
-                        for override in [*overrides, *study.knows[knows].set]:
+                        for override in combined(overrides, study.knows[knows].set):
                             arguments += ["--set", override]
                         arguments += ["--privileged"] if study.knows[knows].privileged else []
                         base = os.path.join(work, "flights", slug + ("" if seed is None else f"_{seed}"))

@@ -49,6 +49,12 @@ def _options(mapping):
     return [text for key, value in mapping.items() for text in ("--" + key, str(value))]
 
 
+def combined(earlier, later):
+    """Both lists of overrides "key=value" as one, without those of `earlier` whose key `later` sets, too."""
+    keys = {text.partition("=")[0] for text in later}
+    return [text for text in earlier if text.partition("=")[0] not in keys] + list(later)
+
+
 def _overrides(values):
     return [text for value in values for text in ("--set", value)]
 
@@ -72,7 +78,7 @@ class Training:
             *("--scenario", scenario.name, "--preset", study.preset, "--variant", method.variant),
             *("--seed", str(seed), "--steps", str(study.steps)),
             *_options({**study.train, **method.train}),
-            *_overrides(method.set + method.train_set),
+            *_overrides(combined(method.set, method.train_set)),
         ]
         self._program = os.path.join(bin_dir, "train")
 
@@ -258,7 +264,7 @@ class Evaluation(Flight):
         else:
             if entry.variant != "stg":
                 arguments += ["--variant", entry.variant]
-            arguments += _overrides(entry.set + entry.evaluate_set)
+            arguments += _overrides(combined(entry.set, entry.evaluate_set))
         name = f"evaluate {scenario.name} {condition} {entry.name} seed {seed}"
         policy = training.policy if training else entry.policy
         super().__init__(name, policy, arguments, study.episodes, base, bin_dir, is_file=bool(training))
