@@ -58,6 +58,13 @@ std::vector<std::string> LoadTrainParameters(const config::Table& options,
     }
     given.push_back(option.path);
   }
+  for (const std::string& path : given) {
+    const config::Owner* owner = options.Find(path)->Unchosen();
+    if (owner == nullptr) continue;
+    std::string name = path;
+    std::replace(name.begin(), name.end(), '-', '_');
+    throw UserError("parameter " + name + ": " + owner->WhyUnread("this node"));
+  }
   return given;
 }
 

@@ -19,6 +19,14 @@ void ImitationConfig::Describe(config::Table* table) {
       "this value; 0: all errors count equally; 2: mainly those of small actions count");
   table->Add("privileged-teacher", &privileged, config::kNone, "-",
              "the imitated controller reads true states, as the critic does; the policy does not");
+  const config::Owner imitating{"training", {"with imitation"}, "imitate", [this] {
+                                  return std::vector<std::string>{
+                                      controller.empty() ? "without imitation" : "with imitation"};
+                                }};
+  for (const char* option :
+       {"imitation-steps", "imitation-share", "imitation-focus", "privileged-teacher"}) {
+    table->Own(option, imitating);
+  }
 }
 
 void ImitationConfig::ValidateOrThrow() const {

@@ -101,14 +101,21 @@ void SwarmConfig::Describe(config::Table* t) {
   t->Add("average", &average, {1, 1e6}, "-",
          "number of updates over which the parameters of the written policy are averaged");
   t->Add("entropy", &entropy, {0, 10}, "-",
-         "weight of the entropy of the choices of a target, at the start");
-  t->Add("last-entropy", &last_entropy, {0, 10}, "-", "weight of this entropy at the end");
+         "with --network graph: weight of the entropy of the choices of a target, at the start");
+  t->Add("last-entropy", &last_entropy, {0, 10}, "-",
+         "with --network graph: weight of this entropy at the end");
   t->Add("value-memory", &value_memory, {1, 1e12}, "-",
          "number of rows over which the moments of the returns are averaged");
   t->Add("validation-interval", &validation_interval, {1, 100000}, "-",
          "checkpoints between two validations");
   t->Add("validation-episodes", &validation_episodes, {1, 10000}, "-",
          "held-out episodes of each validation task");
+  // Only this network makes choices, whose entropy these options weight.
+  const config::Owner graph{
+      "network", {agent::EntityNetworkName(agent::EntityNetwork::kGraph)}, "network", [this] {
+        return std::vector<std::string>{EntityNetworkName(network)};
+      }};
+  for (const char* option : {"entropy", "last-entropy"}) t->Own(option, graph);
 }
 
 void SwarmConfig::ValidateOrThrow() const {

@@ -57,11 +57,11 @@ std::unique_ptr<OnlineLearner> MakeEntityLearner(const Scenario& scenario,
   const learn::SwarmStart from = learn::ReadSwarmStart(start, &config);
   const agent::EntityNetwork network_of_start = config.network;
   const agent::EntityAction action_of_start = config.action;
+  if (!network.empty()) config.network = agent::EntityNetworkNamed(network);
   config::Table table;
   config.Describe(&table);
   learn::RecordedSwarmTrainer::Options options;
   const std::vector<std::string> given = LoadTrainParameters(table, {"network"});
-  if (!network.empty()) config.network = agent::EntityNetworkNamed(network);
   const bool starts = !start.empty();
   if (starts && (config.network != network_of_start || config.action != action_of_start)) {
     throw UserError("start policy '" + start + "': has the network '" +
