@@ -1,8 +1,10 @@
 #include "marl_trainer/learn/train_config.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "auv_common/error.hpp"
+#include "auv_common/names.hpp"
 #include "auv_common/numbers/lanes.hpp"
 #include "marl_trainer/learn/checked_json.hpp"
 
@@ -56,7 +58,7 @@ nlohmann::ordered_json ToJson(const TrainSetup& setup) {
   nlohmann::ordered_json json;
   json["algorithm"] = setup.algorithm;
   json["preset"] = setup.common.preset;
-  json["variant"] = setup.common.variant;
+  json["variant"] = env::NameOf(setup.common.variant);
   TrainSetup copy(setup);
   DumpOptions(copy.Options(), &json);
   return json;
@@ -68,7 +70,12 @@ TrainSetup TrainSetupFromJson(const nlohmann::ordered_json& json) {
     TakeMember(json, "algorithm", &algorithm);
     TrainSetup setup(algorithm, "fast");  // all values of the preset are replaced
     TakeMember(json, "preset", &setup.common.preset);
-    TakeMember(json, "variant", &setup.common.variant);
+    std::string variant;
+    TakeMember(json, "variant", &variant);
+    const std::vector<std::string>& names = env::VariantNames();
+    const auto known = std::find(names.begin(), names.end(), variant);
+    if (known == names.end()) throw UnknownName("variant", variant, names);
+    setup.common.variant = static_cast<env::Variant>(known - names.begin());
     const config::Table table = setup.Options();
     ReadOptions(table, json);
     if (json.size() != 3 + table.fields().size()) throw UserError("unknown fields");

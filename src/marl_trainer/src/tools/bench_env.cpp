@@ -53,6 +53,14 @@ double Bench(const stg::Scenario& s, int envs, int workers, double seconds) {
   return total;
 }
 
+/// Throws UserError for an override of a key that --scaling sets.
+void RefuseKeysOfScaling(const std::vector<std::string>& overrides) {
+  for (const std::string& text : overrides) {
+    if (text.rfind("agents=", 0) != 0 && text.rfind("reset.min_separation_m=", 0) != 0) continue;
+    throw stg::UserError("--set '" + text + "': --scaling sets this key; leave out one of the two");
+  }
+}
+
 }  // namespace
 
 /// Measures environment steps per second, including observations and rewards. The last line is one
@@ -74,6 +82,8 @@ int main(int argc, char** argv) {
   app.AddPlugins();
   return app.Run(argc, argv, [&] {
     stg::CheckOption("--seconds", seconds, 1e-6, 1e6);
+    stg::RefuseKeysOfTraining(overrides, "bench_env");
+    if (scaling) RefuseKeysOfScaling(overrides);
     const auto load = [&](std::vector<std::string> extra) {
       extra.insert(extra.begin(), overrides.begin(), overrides.end());
       return stg::LoadNamedScenario(stg::config::ScenarioFolder(), scenario, condition, extra);

@@ -87,7 +87,8 @@ class Constants {
       }
     }
   }
-  /// The policy with the given constants. Throws UserError for a constant that it does not have.
+  /// The policy with the given constants. Throws UserError for a constant that it does not have, or
+  /// that its text states, too.
   std::string AddTo(const std::string& policy) const {
     std::string text = policy;
     const std::string name = policy.substr(0, policy.find(':'));
@@ -97,6 +98,11 @@ class Constants {
       if (std::find(owners.begin(), owners.end(), name) == owners.end()) {
         throw stg::UserError("--" + key + ": belongs to " + stg::JoinNames(owners) +
                              ", but this evaluation flies '" + policy + "'");
+      }
+      for (const char* before : {":", ","}) {
+        if (policy.find(before + key + "=") == std::string::npos) continue;
+        throw stg::UserError("--" + key + ": --policy '" + policy +
+                             "' states this constant, too; leave out one of the two");
       }
       text += (text.find(':') == std::string::npos ? ":" : ",") + key + "=" + constant.value;
     }
@@ -118,7 +124,8 @@ class Constants {
 int main(int argc, char** argv) {
   stg::CommandLine app("evaluate",
                        "Evaluates a policy or built-in controller on held-out episodes");
-  std::string policy, scenario = "medium", condition = "nominal", variant = "stg", csv, record;
+  std::string policy, scenario = "medium", condition = "nominal", csv, record;
+  auto variant = stg::env::Variant::kStg;
   std::vector<std::string> overrides;
   int record_episodes = 1;
   int episodes = 30, workers = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
@@ -133,10 +140,9 @@ int main(int argc, char** argv) {
           "a file, or one of " +
               stg::JoinNames(stg::config::ConditionNames(stg::config::ScenarioFolder())))
       .ShowDefault();
-  app.Add("--variant", &variant,
-          "stg, semantic, velocity3 or tau6 (Table S9): observation and action interface of the "
-          "policy; return uses the scenario's reward, training_return that of the variant")
-      .ShowDefault();
+  app.Add("--variant", stg::config::Enum(&variant, stg::env::VariantNames()),
+          "observation and action interface of the policy (Table S9); return uses the scenario's "
+          "reward, training_return that of the variant");
   app.Add("--episodes", &episodes, "number of episodes").From(1, 1000000).ShowDefault();
   app.Add("--seed", &seed,
           "episode e is drawn from seed + e; from " +
@@ -151,17 +157,21 @@ int main(int argc, char** argv) {
           "folder for a recording of the first episodes, which ./stg report shows");
   app.Add("--record-episodes", &record_episodes, "number of recorded episodes")
       .From(1, 1000)
-      .ShowDefault();
+      .ShowDefault()
+      .Needs("--record");
   app.Add("--privileged", &privileged,
           "a built-in controller reads true states, also in acoustic mode");
   Constants constants(&app);
   app.AddPlugins();
   return app.Run(argc, argv, [&] {
+    policy = constants.AddTo(policy);
     const stg::Scenario given =
         stg::LoadNamedScenario(stg::config::ScenarioFolder(), scenario, condition, overrides);
+    stg::RefuseKeysOfTraining(overrides, "evaluate");
+    stg::env::RefuseKeysOf(variant, stg::env::VariantKeys::kWithoutReward, overrides);
     const stg::Scenario s = stg::env::EvaluationScenario(given, variant);
-    stg::agent::Decider controller = stg::agent::MakeDecider(constants.AddTo(policy), s.model());
-    controller.privileged = privileged;
+    stg::agent::Decider controller = stg::agent::MakeDecider(policy, s.model());
+    if (privileged) stg::env::ReadTruth(&controller, s.mode);
     CsvOutput table(csv);
     stg::WorkerPool pool(std::min(workers, episodes));
     stg::env::EvaluationOptions options;
@@ -176,7 +186,9 @@ int main(int argc, char** argv) {
     };
     const auto metrics = fly(s);
     // The flights are the same, because a reward has no effect on them.
-    const auto own = variant == "stg" ? metrics : fly(stg::env::VariantScenario(given, variant));
+    const auto own = variant == stg::env::Variant::kStg
+                         ? metrics
+                         : fly(stg::env::VariantScenario(given, variant));
     std::vector<double> training_returns;
     for (const auto& episode : own) training_returns.push_back(episode.episode_return);
     table.Write(Table(metrics, training_returns, seed));

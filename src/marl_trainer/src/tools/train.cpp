@@ -2,6 +2,7 @@
 #include <chrono>
 #include <cstring>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <optional>
 #include <thread>
@@ -44,6 +45,37 @@ bool HasFlag(int argc, char** argv, const std::string& flag) {
   return std::find(argv + 1, argv + argc, flag) != argv + argc;
 }
 
+/// Lets the command line refuse the options that only other algorithms have.
+void RefuseOptionsOfOthers(const std::string& algorithm, const stg::config::Table& own,
+                           stg::CommandLine* app) {
+  std::map<std::string, std::vector<std::string>> owners;
+  for (const std::string& name : stg::learn::Algorithms().Names()) {
+    const std::unique_ptr<stg::learn::AlgorithmConfig> other = stg::learn::Algorithms().Make(name);
+    stg::config::Table table;
+    other->Describe(&table);
+    for (const stg::config::Field& option : table.fields()) {
+      if (own.Find(option.path) == nullptr) owners[option.path].push_back(name);
+    }
+  }
+  for (const auto& [option, names] : owners) {
+    app->Refuse("--" + option, "belongs to " + stg::JoinNames(names) + ", but this training uses " +
+                                   algorithm + " (--algorithm)");
+  }
+}
+
+/// Throws UserError for a key of the scenario that this training does not read.
+void RefuseUnreadKeys(const stg::learn::TrainSetup& setup,
+                      const std::vector<std::string>& overrides) {
+  stg::env::RefuseKeysOf(setup.common.variant, stg::env::VariantKeys::kAll, overrides);
+  for (const std::string& text : overrides) {
+    if (setup.own->ReadsState() || text.rfind("critic.", 0) != 0) continue;
+    throw stg::UserError("--set '" + text +
+                         "': belongs to a critic that reads the state of the whole swarm, but this "
+                         "training uses " +
+                         setup.algorithm + ", which has none");
+  }
+}
+
 int Train(int argc, char** argv, stg::learn::Communicator* ranks) {
   stg::LoadPluginArguments(argc, argv);
   // A resumed run has the setup of its folder. Options may repeat it.
@@ -75,8 +107,8 @@ int Train(int argc, char** argv, stg::learn::Communicator* ranks) {
   app.Add("--preset", &setup.common.preset,
           "defaults of the options below: fast (of this project) or paper (Table S2)")
       .ShowDefault();
-  app.Add("--variant", &setup.common.variant, "stg, semantic, velocity3 or tau6 (Table S9)")
-      .ShowDefault();
+  app.Add("--variant", stg::config::Enum(&setup.common.variant, stg::env::VariantNames()),
+          "observation, action interface and reward of Table S9; stg: those of the scenario");
   app.Add("--out", &out, "folder for checkpoints, policies and logs").Required();
   app.Add("--resume", &resume,
           "continue from the folder's newest intact checkpoint, with the folder's scenario, "
@@ -87,9 +119,11 @@ int Train(int argc, char** argv, stg::learn::Communicator* ranks) {
   app.Add("--set", &overrides, "scenario override key.path=value, repeatable").OneValuePerUse();
   const stg::config::Table table = setup.Options();
   app.Add(table);
+  RefuseOptionsOfOthers(setup.algorithm, table, &app);
   app.AddPlugins();
   if (const std::optional<int> status = app.Parse(argc, argv)) return *status;
 
+  RefuseUnreadKeys(setup, overrides);
   const bool names_scenario = app.Count("--scenario") + app.Count("--condition") +
                                   app.Count("--train-on") + app.Count("--set") >
                               0;

@@ -213,10 +213,10 @@ TEST(Imitation, IsInFullForTheFirstHalfAndThenFades) {
 
 TEST(Variants, DifferAsTableS9SaysAndAreEvaluatedWithOneReward) {
   Scenario scenario;
-  EXPECT_EQ(env::VariantScenario(scenario, "stg").agent.observation_size(), 74);
-  EXPECT_EQ(env::VariantScenario(scenario, "semantic").agent.observation_size(), 68);
-  EXPECT_EQ(env::VariantScenario(scenario, "velocity3").agent.observation_size(), 51);
-  const Scenario tau6 = env::VariantScenario(scenario, "tau6");
+  EXPECT_EQ(env::VariantScenario(scenario, env::Variant::kStg).agent.observation_size(), 74);
+  EXPECT_EQ(env::VariantScenario(scenario, env::Variant::kSemantic).agent.observation_size(), 68);
+  EXPECT_EQ(env::VariantScenario(scenario, env::Variant::kVelocity3).agent.observation_size(), 51);
+  const Scenario tau6 = env::VariantScenario(scenario, env::Variant::kTau6);
   EXPECT_EQ(tau6.agent.observation_size(), 51);
   EXPECT_EQ(tau6.world.control.action_size(), 6);
   EXPECT_EQ(tau6.world.control.action_scale, 0.18);
@@ -224,10 +224,34 @@ TEST(Variants, DifferAsTableS9SaysAndAreEvaluatedWithOneReward) {
   EXPECT_EQ(tau6.world.control.max_delta, 0.0);
   EXPECT_EQ(tau6.reward.kind, task::RewardKind::kReleaseRaw);
   EXPECT_EQ(tau6.reward.weights.coordination, 0.10);
-  EXPECT_EQ(env::EvaluationScenario(scenario, "tau6").reward.kind, scenario.reward.kind);
-  EXPECT_EQ(env::EvaluationScenario(scenario, "tau6").reward.weights.tracking, 0.72);
-  EXPECT_EQ(env::EvaluationScenario(scenario, "tau6").world.control.action_size(), 6);
-  EXPECT_THROW(env::VariantScenario(scenario, "other"), UserError);
+  EXPECT_EQ(env::EvaluationScenario(scenario, env::Variant::kTau6).reward.kind,
+            scenario.reward.kind);
+  EXPECT_EQ(env::EvaluationScenario(scenario, env::Variant::kTau6).reward.weights.tracking, 0.72);
+  EXPECT_EQ(env::EvaluationScenario(scenario, env::Variant::kTau6).world.control.action_size(), 6);
+}
+
+TEST(Variants, AnOverrideOfAKeyThatTheVariantSetsIsRefused) {
+  using env::Variant;
+  using env::VariantKeys;
+  const auto refusal = [](Variant variant, VariantKeys keys, const std::string& text) {
+    try {
+      env::RefuseKeysOf(variant, keys, {"seed=1", text});
+    } catch (const UserError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(
+      refusal(Variant::kTau6, VariantKeys::kAll, "control.interface=velocity3"),
+      "--set 'control.interface=velocity3': the variant tau6 sets control.interface=tau6; leave "
+      "out this override, or choose the variant stg");
+  const char* const weight = "reward.weights.semantic=0.1";
+  EXPECT_NE(refusal(Variant::kSemantic, VariantKeys::kAll, weight), "");
+  EXPECT_EQ(refusal(Variant::kSemantic, VariantKeys::kWithoutReward, weight), "");
+  EXPECT_EQ(refusal(Variant::kStg, VariantKeys::kAll, weight), "");
+  // This variant keeps the interface of the scenario, and no variant sets the separation.
+  EXPECT_EQ(refusal(Variant::kVelocity3, VariantKeys::kAll, "control.interface=tau6"), "");
+  EXPECT_EQ(refusal(Variant::kTau6, VariantKeys::kAll, "reward.weights.separation=0.1"), "");
 }
 
 }  // namespace

@@ -297,14 +297,16 @@ TEST_F(TrainerTest, ARunCanStartFromTheNetworksOfAnother) {
 }
 
 TEST_F(TrainerTest, EveryVariantTrains) {
-  for (const char* variant : {"stg", "semantic", "velocity3", "tau6"}) {
+  for (const auto variant : {env::Variant::kStg, env::Variant::kSemantic, env::Variant::kVelocity3,
+                             env::Variant::kTau6}) {
     TrainSetup setup = SmallSetup();
     setup.common.variant = variant;
     setup.common.steps = 640;
-    Trainer trainer(ShortScenario(), setup, Options(variant));
+    const std::string& name = env::NameOf(variant);
+    Trainer trainer(ShortScenario(), setup, Options(name));
     EXPECT_TRUE(trainer.Run());
     const agent::Policy policy =
-        agent::Policy::LoadOnnx((folder_ / variant / "policy_last.onnx").string());
+        agent::Policy::LoadOnnx((folder_ / name / "policy_last.onnx").string());
     EXPECT_NO_THROW(policy.RequireFits(env::VariantScenario(ShortScenario(), variant).model()));
   }
 }

@@ -1,38 +1,71 @@
 #include "stg_env/env/variants.hpp"
 
+#include <cassert>
+
+#include "auv_common/config/value.hpp"
 #include "auv_common/error.hpp"
 
 namespace stg::env {
+namespace {
 
-Scenario VariantScenario(const Scenario& scenario, const std::string& variant) {
-  Scenario s = scenario;
-  if (variant == "stg") return s;
-  s.agent.observation.graph = false;
-  s.reward.kind = task::RewardKind::kReleaseRaw;
-  task::RewardWeights raw;
-  raw.tracking = 0.55;
-  raw.observation = 0.20;
-  raw.coordination = 0.10;
-  raw.communication = 0.05;
-  raw.semantic = 0.0;
-  raw.control_cost = 0.08;
-  raw.separation = scenario.reward.weights.separation;
-  s.reward.weights = raw;
-  if (variant == "semantic") return s;
-  s.agent.observation.tracking = false;
-  s.agent.observation.semantic = false;
-  if (variant == "velocity3") return s;
-  if (variant != "tau6") {
-    throw UserError("--variant: '" + variant + "' is not stg, semantic, velocity3 or tau6");
+struct Setting {
+  const char *key, *value;
+};
+
+/// The keys that a variant sets, with their values.
+std::vector<Setting> SettingsOf(Variant variant) {
+  std::vector<Setting> all;
+  if (variant == Variant::kStg) return all;
+  all = {{"observation.graph", "false"},          {"reward.kind", "release_raw"},
+         {"reward.weights.tracking", "0.55"},     {"reward.weights.observation", "0.20"},
+         {"reward.weights.coordination", "0.10"}, {"reward.weights.communication", "0.05"},
+         {"reward.weights.semantic", "0.0"},      {"reward.weights.control_cost", "0.08"}};
+  if (variant == Variant::kSemantic) return all;
+  all.insert(all.end(), {{"observation.tracking", "false"}, {"observation.semantic", "false"}});
+  if (variant == Variant::kVelocity3) return all;
+  all.insert(all.end(), {{"control.interface", "tau6"},
+                         {"control.action_scale", "0.18"},
+                         {"control.smoothing", "0.0"},
+                         {"control.max_delta", "0.0"}});
+  return all;
+}
+
+}  // namespace
+
+const std::vector<std::string>& VariantNames() {
+  static const std::vector<std::string> names = {"stg", "semantic", "velocity3", "tau6"};
+  return names;
+}
+
+const std::string& NameOf(Variant variant) {
+  return VariantNames().at(static_cast<std::size_t>(variant));
+}
+
+void RefuseKeysOf(Variant variant, VariantKeys keys, const std::vector<std::string>& overrides) {
+  for (const auto& [key, value] : SettingsOf(variant)) {
+    const std::string own = std::string(key) + "=", reward = "reward.";
+    if (keys == VariantKeys::kWithoutReward && own.rfind(reward, 0) == 0) continue;
+    for (const std::string& text : overrides) {
+      if (text.rfind(own, 0) != 0) continue;
+      throw UserError("--set '" + text + "': the variant " + NameOf(variant) + " sets " + own +
+                      value + "; leave out this override, or choose the variant stg");
+    }
   }
-  s.world.control.interface = dynamics::ActionInterface::kTau6;
-  s.world.control.action_scale = 0.18;
-  s.world.control.smoothing = 0.0;
-  s.world.control.max_delta = 0.0;
+}
+
+Scenario VariantScenario(const Scenario& scenario, Variant variant) {
+  Scenario s = scenario;
+  config::Table table;
+  Describe(&s, &table);
+  for (const auto& [key, value] : SettingsOf(variant)) {
+    const auto message = config::ParseText(*table.Find(key), value);
+    assert(!message);
+    (void)message;
+  }
   return s;
 }
 
-Scenario EvaluationScenario(const Scenario& scenario, const std::string& variant) {
+Scenario EvaluationScenario(const Scenario& scenario, Variant variant) {
   Scenario s = VariantScenario(scenario, variant);
   s.reward = scenario.reward;
   return s;

@@ -2,6 +2,7 @@
 
 #include "auv_common/config/files.hpp"
 #include "auv_common/config/loader.hpp"
+#include "auv_common/error.hpp"
 
 namespace stg {
 
@@ -60,6 +61,16 @@ Scenario LoadNamedScenario(const std::string& folder, const std::string& scenari
                            const std::string& condition,
                            const std::vector<std::string>& overrides) {
   return config::Load<Scenario>(config::NamedSource(folder, scenario, condition, overrides));
+}
+
+void RefuseKeysOfTraining(const std::vector<std::string>& overrides, const std::string& program) {
+  for (const std::string& text : overrides) {
+    for (const char* keys : {"critic.", "reset.curriculum"}) {
+      if (text.rfind(keys, 0) != 0) continue;
+      throw UserError("--set '" + text + "': only a training reads this key, but " + program +
+                      " does not train");
+    }
+  }
 }
 
 std::string ToYaml(const Scenario& scenario) { return config::ToYaml(scenario); }

@@ -38,6 +38,8 @@ class AlgorithmConfig {
 
   /// Imitation at the start of a training; null: the algorithm has none.
   virtual const ImitationConfig* Imitation() const { return nullptr; }
+  /// True if the algorithm has a critic that reads the state of the whole swarm.
+  virtual bool ReadsState() const { return true; }
   /// Largest number of ranks that the algorithm can learn with.
   virtual int MostRanks() const { return 1; }
   /// @param common, problem are copied. @param team computes the update; it must outlive the

@@ -8,13 +8,14 @@
 #include "marl_trainer/learn/algorithm_config.hpp"
 #include "marl_trainer/learn/options.hpp"
 #include "stg_env/env/seed_blocks.hpp"
+#include "stg_env/env/variants.hpp"
 
 namespace stg::learn {
 
 /// Options that every training has, for any algorithm. Defaults are the `fast` preset.
 struct TrainConfig {
   std::string preset = "fast";
-  std::string variant = "stg";
+  env::Variant variant = env::Variant::kStg;
   std::uint64_t seed = 0;
   std::int64_t steps = 500000;
 

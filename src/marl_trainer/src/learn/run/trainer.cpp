@@ -6,7 +6,6 @@
 #include "auv_common/error.hpp"
 #include "marl_trainer/learn/nn/blas.hpp"
 #include "marl_trainer/learn/run/validation.hpp"
-#include "stg_env/env/variants.hpp"
 
 namespace stg::learn {
 namespace {
@@ -246,7 +245,7 @@ void Trainer::RunValidation(TrainRecord* record) {
   last_validation_ = fly(train_scenario_);
   // The flights are the same, because a reward has no effect on them.
   const task::MetricSummary judged =
-      setup_.common.variant == "stg" ? last_validation_ : fly(evaluation_scenario_);
+      setup_.common.variant == env::Variant::kStg ? last_validation_ : fly(evaluation_scenario_);
   last_validation_.Append("scenario_return", judged.Mean("return"), judged.Std("return"));
   record->validated = true;
   record->validation = last_validation_;
@@ -289,8 +288,9 @@ void Trainer::Save() {
 void Trainer::SavePolicy(const std::string& name) const {
   if (!leads()) return;
   const TrainConfig& config = setup_.common;
-  const std::string id = scenario_.run.name + "-" + config.variant + "-" + config.preset + "-seed" +
-                         std::to_string(config.seed) + "-" + std::to_string(state_.env_steps);
+  const std::string id = scenario_.run.name + "-" + env::NameOf(config.variant) + "-" +
+                         config.preset + "-seed" + std::to_string(config.seed) + "-" +
+                         std::to_string(state_.env_steps);
   agent::PolicyMetadata m =
       MetadataOf(train_scenario_.agent.observation, train_scenario_.world.control,
                  ScenarioHash(train_scenario_), id, state_.env_steps, config.seed);

@@ -7,7 +7,7 @@ namespace {
 
 TEST_F(TrainerTest, TheBestPolicyIsChosenByTheTrainingsOwnReward) {
   TrainSetup setup = SmallSetup();
-  setup.common.variant = "tau6";
+  setup.common.variant = env::Variant::kTau6;
   setup.common.validation_interval = 640;
   const Scenario scenario = ShortScenario();
   Trainer trainer(scenario, setup, Options("run"));
@@ -40,8 +40,8 @@ TEST_F(TrainerTest, TheBestPolicyIsChosenByTheTrainingsOwnReward) {
   const auto fly = [&](const Scenario& s) {
     return task::Summarise(Validate(env::EnvFactory(s), 4, &trainer.algorithm(), &pool));
   };
-  const auto by_own = fly(env::VariantScenario(scenario, "tau6"));
-  const auto by_scenario = fly(env::EvaluationScenario(scenario, "tau6"));
+  const auto by_own = fly(env::VariantScenario(scenario, env::Variant::kTau6));
+  const auto by_scenario = fly(env::EvaluationScenario(scenario, env::Variant::kTau6));
   EXPECT_NEAR(last, by_own.Mean("return"), 1e-6 * std::abs(last));
   EXPECT_NEAR(last_judged, by_scenario.Mean("return"), 1e-6 * std::abs(last_judged));
   EXPECT_GT(std::abs(last - last_judged), 0.1);

@@ -49,6 +49,11 @@ Scenario LoadNamedScenario(const std::string& folder, const std::string& scenari
                            const std::string& condition = "nominal",
                            const std::vector<std::string>& overrides = {});
 
+/// Throws UserError for an override "key.path=value" of a key that only a training reads: the
+/// curriculum, and the scales of the critic's state.
+/// @param program for the message
+void RefuseKeysOfTraining(const std::vector<std::string>& overrides, const std::string& program);
+
 /// Every key with its value; LoadScenario of the result gives the same struct.
 std::string ToYaml(const Scenario& scenario);
 

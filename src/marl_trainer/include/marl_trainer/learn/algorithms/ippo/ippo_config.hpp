@@ -10,6 +10,7 @@ namespace stg::learn {
 /// of an AUV's own observation.
 struct IppoConfig : CopyableConfig<IppoConfig, MappoConfig> {
   void ApplyRecordings(const TrainConfig& common) override;
+  bool ReadsState() const override { return false; }
   std::unique_ptr<Algorithm> Make(const TrainConfig& common, const Problem& problem,
                                   const Team& team) const override;
 };

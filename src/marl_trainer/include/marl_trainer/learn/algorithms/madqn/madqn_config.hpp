@@ -28,6 +28,7 @@ struct MadqnConfig : CopyableConfig<MadqnConfig, ReplayConfig>, QOptions {
   void Describe(config::Table* table) override;
   void ApplyPreset(const std::string& preset, TrainConfig* common) override;
   void ValidateOrThrow(const TrainConfig& common) const override;
+  bool ReadsState() const override { return false; }
   std::unique_ptr<Algorithm> Make(const TrainConfig& common, const Problem& problem,
                                   const Team& team) const override;
 };
