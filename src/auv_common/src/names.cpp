@@ -82,6 +82,15 @@ std::string JoinNames(const std::vector<std::string>& names) {
   return text;
 }
 
+std::vector<std::string> Without(std::vector<std::string> names,
+                                 const std::vector<std::string>& others) {
+  const auto is_other = [&others](const std::string& name) {
+    return std::find(others.begin(), others.end(), name) != others.end();
+  };
+  names.erase(std::remove_if(names.begin(), names.end(), is_other), names.end());
+  return names;
+}
+
 UserError UnknownName(const std::string& kind, const std::string& name,
                       const std::vector<std::string>& names) {
   std::string text =

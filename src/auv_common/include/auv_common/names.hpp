@@ -25,6 +25,10 @@ std::string NearestName(const std::string& text, const std::vector<std::string>&
 /// "a | b | c".
 std::string JoinNames(const std::vector<std::string>& names);
 
+/// The names that are not in the second list.
+std::vector<std::string> Without(std::vector<std::string> names,
+                                 const std::vector<std::string>& others);
+
 /// The error to throw for a name that is not in `names`. `kind` says in one or two words what the
 /// name is for. The message lists the names and suggests the nearest one.
 UserError UnknownName(const std::string& kind, const std::string& name,

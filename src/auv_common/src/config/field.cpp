@@ -24,16 +24,25 @@ bool Owner::IsChosen() const {
          choice.end();
 }
 
-std::string Owner::WhyUnread(const std::string& chooser, const std::string& prefix) const {
+std::string Owner::WhyUnread(const std::string& chooser, const std::string& by) const {
+  if (!refusal.empty()) return refusal;
   return "belongs to the " + kind + " " + QuotedNames(names) + "; " + chooser + " chose " +
-         QuotedNames(chosen()) + " (" + prefix + key + ")";
+         QuotedNames(chosen()) + " (" + by + ")";
 }
 
 const Owner* Field::Unchosen() const {
+  const Owner* in_files = nullptr;
   for (const auto& owner : owners) {
-    if (!owner->IsChosen() && !(also_read && also_read())) return owner.get();
+    if (owner->IsChosen() || (also_read && also_read())) continue;
+    if (!owner->files_state_all) return owner.get();
+    in_files = owner.get();
   }
-  return nullptr;
+  return in_files;
+}
+
+bool Field::InFiles() const {
+  const Owner* const owner = Unchosen();
+  return owner == nullptr || owner->files_state_all;
 }
 
 void Table::Add(const std::string& key, ValueRef value, Limits limits, std::string unit,

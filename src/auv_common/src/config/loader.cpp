@@ -111,6 +111,7 @@ void Loader::ApplyOverride(const std::string& text) {
   if (path == "plugins") return;
   if (const Field* field = table_.Find(path)) {
     Set(*field, ParseYaml(value, origin + ": " + path, false), origin + ": ");
+    origin_[path].is_override = true;
   } else if (!Foreign(path)) {
     throw UserError(origin + ": " + Unknown(path));
   }
@@ -172,7 +173,7 @@ void Loader::Set(const Field& field, const YamlTree& value, const std::string& w
 void Loader::RequireAll(const YamlTree& root, const std::string& file, const Keys& given) const {
   std::vector<std::string> missing;
   for (const Field& field : table_.fields()) {
-    if (given.count(field.path) != 0 || field.fallback || field.Unchosen()) continue;
+    if (given.count(field.path) != 0 || field.fallback || !field.InFiles()) continue;
     missing.push_back(field.path);
   }
   if (missing.empty()) return;
@@ -241,10 +242,26 @@ void Loader::RefuseUnread() const {
     const auto set = origin_.find(field.path);
     const Owner* const owner = field.Unchosen();
     if (set == origin_.end() || owner == nullptr) continue;
-    const auto choice = origin_.find(owner->key);
+    if (owner->files_state_all && !set->second.is_override) continue;
+    const std::string& key = LastKeyThatChooses(*owner);
+    const auto choice = origin_.find(key);
     if (choice != origin_.end() && set->second.layer < choice->second.layer) continue;
-    throw UserError(set->second.where + field.path + ": " + owner->WhyUnread("this configuration"));
+    throw UserError(set->second.where + field.path + ": " +
+                    owner->WhyUnread("this configuration", key));
   }
+}
+
+/// The key of the owner that was set last; the first one among those of the same layer.
+const std::string& Loader::LastKeyThatChooses(const Owner& owner) const {
+  const auto layer = [this](const std::string& key) {
+    const auto found = origin_.find(key);
+    return found == origin_.end() ? -1 : found->second.layer;
+  };
+  const std::string* last = &owner.key;
+  for (const std::string& key : owner.other_keys) {
+    if (layer(key) > layer(*last)) last = &key;
+  }
+  return *last;
 }
 
 std::string Loader::WhereOf(const std::string& key) const {

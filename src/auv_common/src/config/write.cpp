@@ -90,7 +90,7 @@ std::string ToYaml(const Table& table) {
   std::string text;
   std::string open;  // section of the last heading
   for (const Field& field : table.fields()) {
-    if (field.Unchosen() != nullptr) continue;
+    if (!field.InFiles()) continue;
     const bool whole = field.owners.empty() || std::holds_alternative<DifferenceRef>(field.value);
     if (whole && field.fallback && FormatValue(field.value) == *field.fallback) continue;
     const std::string section = Parent(field.path);

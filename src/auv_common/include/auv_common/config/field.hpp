@@ -136,11 +136,16 @@ struct Owner {
   std::string key;                 ///< the key that chooses, e.g. "target.motion"
   /// What the configuration chooses. Reads the struct of the table.
   std::function<std::vector<std::string>()> chosen;
+  std::vector<std::string> other_keys = {};  ///< keys that choose together with `key`
+  /// A file states the keys of all things of this kind, because a command may choose another one on
+  /// top of it. Only an override that has no effect is refused.
+  bool files_state_all = false;
+  std::string refusal = {};  ///< replaces the sentence that names the owner and the choice
 
   bool IsChosen() const;
-  /// For messages: "belongs to the KIND 'a' or 'b'; CHOOSER chose 'c' (KEY)".
-  /// @param chooser e.g. "this configuration" @param prefix of the key, e.g. "--"
-  std::string WhyUnread(const std::string& chooser, const std::string& prefix = "") const;
+  /// For messages: "belongs to the KIND 'a' or 'b'; CHOOSER chose 'c' (BY)", or `refusal`.
+  /// @param chooser e.g. "this configuration" @param by the key or option that chose
+  std::string WhyUnread(const std::string& chooser, const std::string& by) const;
 };
 
 /// One key of a file and the member of the struct that it fills.
@@ -157,6 +162,8 @@ struct Field {
 
   /// The owner that was not chosen, so that the key has no effect; null: the key has an effect.
   const Owner* Unchosen() const;
+  /// True: a file may state the key, and saving writes it.
+  bool InFiles() const;
 };
 
 /// All keys of a configuration, in file order. The keys of one section are adjacent. The references

@@ -79,6 +79,7 @@ class Loader {
   std::string Nearest(const std::string& path) const;
   std::string Unknown(const std::string& path) const;
   std::string WhereOf(const std::string& key) const;
+  const std::string& LastKeyThatChooses(const Owner& owner) const;
 
   const Table& table_;
   const Scope scope_;
@@ -88,6 +89,7 @@ class Loader {
     /// Files count from the last base to the named file. Overlays and overrides share the last
     /// number, because one command asks for all of them.
     int layer = 0;
+    bool is_override = false;
   };
   std::map<std::string, Origin> origin_;
   int layer_ = 0;
