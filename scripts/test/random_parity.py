@@ -138,7 +138,11 @@ def draw(seed):
         if keys.get(chooser) not in names:  # keys that nothing reads would be refused
             keys = {k: v for k, v in keys.items() if not k.startswith(section + ".")}
     if base.startswith(OF_SEA):
-        keys.pop("vehicle.fully_actuated.added_mass_coriolis", None)
+        unread = ["vehicle.fully_actuated.added_mass_coriolis", "control.heading"]
+        model = "kinematic" if base == "utracking" else "torpedo"
+        if set(keys.get("vehicle.models", [model])) == {"kinematic"}:
+            unread += ["vehicle.integrator", "disturbance.force_std_n"]
+        keys = {k: v for k, v in keys.items() if k not in unread}
     tree = {"base": f"{base}.yaml", "name": "drawn", "agents": agents}
     for key, value in keys.items():
         *sections, last = key.split(".")

@@ -28,6 +28,19 @@ void Describe(ControlConfig* c, config::Table* t) {
          "free: yaw is only damped; along_velocity: the bow points along the commanded velocity");
   t->Add("heading_gain", &c->heading_gain, config::NonNegative(1e3), "1/rad",
          "along_velocity: gain, as a share of the largest moment");
+  const auto interface = [c] {
+    const bool velocity = c->interface == ActionInterface::kVelocity3;
+    return std::vector<std::string>{velocity ? "velocity3" : "tau6"};
+  };
+  for (const char* key : {"max_delta", "smoothing"}) {
+    t->Own(std::string("control.") + key,
+           {"action interface", {"velocity3"}, "control.interface", interface});
+  }
+  t->Own("control.heading_gain",
+         {"heading", {"along_velocity"}, "control.heading", [c] {
+            const bool free = c->heading == HeadingMode::kFree;
+            return std::vector<std::string>{free ? "free" : "along_velocity"};
+          }});
   Describe(&c->autopilot, t);
 }
 

@@ -63,6 +63,12 @@ void Describe(NavigationConfig* c, config::Table* t) {
            return std::vector<std::string>{c->fixes == FixUse::kReported ? "reported" : "correct"};
          }});
   }
+  for (const char* key : {"gps_std_m", "fixes", "gps_first_fix_s", "gps_period_s"}) {
+    t->Own(std::string("navigation.dead_reckoning.") + key,
+           {"navigation", {"with GPS"}, "navigation.dead_reckoning.gps_depth_m", [c] {
+              return std::vector<std::string>{c->gps_depth_m > 0.0 ? "with GPS" : "without GPS"};
+            }});
+  }
   NavigationSystems().Describe("navigation", "navigation.kind", owner.chosen, &c->kinds, t);
   for (const char* key : {"period_s", "dvl_scale_std", "dvl_noise_mps", "dvl_altitude_m",
                           "heading_std_deg", "gyro_walk_deg_per_sqrt_h", "depth_std_m",

@@ -48,6 +48,11 @@ void Describe(SensingConfig* c, config::Table* t) {
          "rate at which a sensor goes blind; 0: never");
   t->Add("dropout_duration_s", &c->dropout_duration_s, config::Positive(1e5), "s",
          "mean duration of a blind spell");
+  t->Own("sensing.dropout_duration_s",
+         {"target sensor", {"with blind spells"}, "sensing.dropout_rate_hz", [c] {
+            return std::vector<std::string>{c->dropout_rate_hz > 0.0 ? "with blind spells"
+                                                                     : "without blind spells"};
+          }});
   t->Add("cue_std_m", &c->cue_std_m, config::NonNegative(1e4), "m, world ENU",
          "acoustic mode: standard deviation of each component of the initial datum");
   t->AddOptional("period_s", &c->period_s, "0.0", NonNegative(1e5), "s",

@@ -1,5 +1,6 @@
 #include "auv_dynamics/targets/target_config.hpp"
 
+#include "auv_common/names.hpp"
 #include "auv_dynamics/targets/target_motion.hpp"
 
 namespace stg::dynamics {
@@ -19,9 +20,11 @@ void Describe(TargetConfig* c, config::Table* t) {
          "largest speed of a target");
   t->Add("max_turn_rate_radps", &c->max_turn_rate_radps, config::Positive(10), "rad/s",
          "largest turn rate of a target, except at walls");
-  TargetMotions().Describe(
-      "target", "target.motion", [c] { return std::vector<std::string>{c->motion}; }, &c->motions,
-      t);
+  const auto chosen = [c] { return std::vector<std::string>{c->motion}; };
+  t->Own("target.max_turn_rate_radps",
+         {"target motion", Without(TargetMotions().Names(), {"constant_velocity"}), "target.motion",
+          chosen});
+  TargetMotions().Describe("target", "target.motion", chosen, &c->motions, t);
   t->Moved("target.turn_rate_radps", "target.coordinated_turn.rate_radps");
   t->Moved("target.turn_period_s", "target.coordinated_turn.period_s");
   t->Moved("target.waypoint_radius_m", "target.random_waypoint.radius_m");

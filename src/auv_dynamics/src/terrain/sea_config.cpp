@@ -7,6 +7,16 @@ using config::NonNegative;
 using config::Positive;
 using config::Within;
 
+namespace {
+
+std::vector<std::string> WaterOf(const SeaConfig& c) { return {c.open ? "open water" : "walls"}; }
+
+}  // namespace
+
+config::Owner WallsOwner(const SeaConfig* c) {
+  return {"world", {"walls"}, "sea.open", [c] { return WaterOf(*c); }};
+}
+
 void Describe(SeaConfig* c, config::Table* t) {
   t->Section("sea");
   t->AddOptional("open", &c->open, "false", kNone, "-",
@@ -30,9 +40,7 @@ void Describe(SeaConfig* c, config::Table* t) {
   t->AddOptional("cylinders", config::RowsRef{&c->cylinders, 5}, "[]", Within(-1e5, 1e5),
                  "m, world ENU",
                  "upright obstacles in open water: [x, y, z of the foot, radius, height] each");
-  t->Own("sea", {"world", {"open water"}, "sea.open", [c] {
-                   return std::vector<std::string>{c->open ? "open water" : "walls"};
-                 }});
+  t->Own("sea", {"world", {"open water"}, "sea.open", [c] { return WaterOf(*c); }});
   t->AlsoReadIf("sea.open", [] { return true; });
 }
 

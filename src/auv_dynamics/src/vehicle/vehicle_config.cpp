@@ -2,7 +2,9 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <utility>
 
+#include "auv_common/names.hpp"
 #include "auv_dynamics/vehicle/vehicle.hpp"
 
 namespace stg::dynamics {
@@ -66,6 +68,13 @@ void DescribeFullyActuated(VehicleConfig* c, config::Table* t) {
 
 std::vector<std::string> IntegratorNames() { return {"semi_implicit", "rk4"}; }
 
+config::Owner VehicleOwner(const VehicleConfig* c, std::vector<std::string> models) {
+  const auto chosen = [c] {
+    return c->models.empty() ? std::vector<std::string>{c->model} : c->models;
+  };
+  return {"vehicle", std::move(models), "vehicle.model", chosen, {"vehicle.models"}};
+}
+
 void Describe(VehicleConfig* c, config::Table* t) {
   const std::string axes = "surge sway heave roll pitch yaw";
   t->Section("vehicle");
@@ -88,17 +97,28 @@ void Describe(VehicleConfig* c, config::Table* t) {
   t->Add("substeps", &c->substeps, config::Within(1, 1000), "-",
          "integrator steps per physics step");
   t->Add("radius_m", &c->radius_m, config::Positive(100), "m", "collision radius of one AUV");
-  const auto chosen = [c] {
-    return c->models.empty() ? std::vector<std::string>{c->model} : c->models;
-  };
+  const std::vector<std::string> models = Vehicles().Names();
+  for (const char* key : {"clip_velocity", "integrator", "substeps"}) {
+    t->Own(std::string("vehicle.") + key, VehicleOwner(c, Without(models, {"kinematic"})));
+  }
+  t->Own("vehicle.max_tau", VehicleOwner(c, Without(models, {"torpedo", "kinematic"})));
+  t->Own("vehicle.model", {"fleet", {"of one model"}, "vehicle.models", [c] {
+                             return std::vector<std::string>{
+                                 c->models.empty() ? "of one model" : "of models in turn"};
+                           }});
   const auto describe = [](auto* options, config::Table* table) { Describe(options, table); };
-  const auto of = [&](const char* name) {
-    return config::Owner{"vehicle", {name}, "vehicle.model", chosen};
-  };
+  const auto of = [c](const char* name) { return VehicleOwner(c, {name}); };
   t->Thing(of("fully_actuated"), "vehicle.fully_actuated", c, DescribeFullyActuated);
   t->Thing(of("torpedo"), "vehicle.torpedo", &c->torpedo, describe);
   t->Thing(of("kinematic"), "vehicle.kinematic", &c->kinematic, describe);
-  Vehicles().Describe("vehicle", "vehicle.model", chosen, &c->kinds, t);
+  for (const char* key : {"r_BB_m", "weight_n", "buoyancy_n"}) {
+    t->Own(std::string("vehicle.fully_actuated.") + key,
+           {"vehicle", {"with restoring forces"}, "vehicle.fully_actuated.restoring", [c] {
+              return std::vector<std::string>{c->restoring ? "with restoring forces"
+                                                           : "without restoring forces"};
+            }});
+  }
+  Vehicles().Describe("vehicle", "vehicle.model", of("").chosen, &c->kinds, t);
   for (const char* key : {"mass_kg", "inertia_kgm2", "added_mass", "linear_damping",
                           "quadratic_damping", "r_BG_m", "r_BB_m", "weight_n", "buoyancy_n",
                           "added_mass_coriolis", "reversed_coriolis", "restoring", "float32_tau"}) {

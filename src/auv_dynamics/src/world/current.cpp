@@ -1,25 +1,16 @@
 #include "auv_dynamics/world/current.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "auv_common/numbers/attitude.hpp"
 #include "auv_common/numbers/random.hpp"
 
 namespace stg::dynamics {
-namespace {
-
-template <std::size_t N>
-bool AnyOf(const std::array<double, N>& values) {
-  return std::any_of(values.begin(), values.end(), [](double v) { return v != 0.0; });
-}
-
-}  // namespace
 
 Current::Current(const CurrentConfig& config)
     : config_(config),
-      layered_(AnyOf(config.layer_east_mps) || AnyOf(config.layer_north_mps)),
-      tidal_(AnyOf(config.tide_mps)),
+      layered_(config.layered()),
+      tidal_(config.tidal()),
       uniform_(!layered_ && !tidal_ && !config.random()) {
   east_.fill(Pack(0.0));
   north_.fill(Pack(0.0));

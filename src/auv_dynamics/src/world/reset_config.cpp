@@ -7,9 +7,37 @@ using config::kNone;
 using config::NonNegative;
 using config::Positive;
 
+namespace {
+
+const std::vector<std::string> kStageNames{"easy", "medium", "hard"};
+
+/// The keys of a stage have no effect while no episode starts in this stage, and the distance from
+/// the target has none if vehicles start anywhere.
+void OwnStages(ResetConfig* c, config::Table* t) {
+  const config::Owner deployment{
+      "start", {"around", "point"}, "reset.deploy", [c] {
+        const char* const names[] = {"around", "point", "area"};
+        return std::vector<std::string>{names[static_cast<std::size_t>(c->deploy)]};
+      }};
+  const auto chosen = [c] {
+    return c->curriculum
+               ? kStageNames
+               : std::vector<std::string>{kStageNames[static_cast<std::size_t>(c->stage)]};
+  };
+  for (const std::string& name : kStageNames) {
+    const std::string section = "reset.stages." + name;
+    t->Own(section + ".auv_distance_m", deployment);
+    config::Owner stage{"reset stage", {name}, "reset.stage", chosen, {"reset.curriculum"}};
+    stage.files_state_all = true;  // conditions and the curriculum choose other stages
+    t->Own(section, stage);
+  }
+}
+
+}  // namespace
+
 void Describe(ResetConfig* c, config::Table* t) {
   t->Section("reset");
-  t->Add("stage", config::Enum(&c->stage, {"easy", "medium", "hard"}), config::kNone, "-",
+  t->Add("stage", config::Enum(&c->stage, kStageNames), config::kNone, "-",
          "reset stage of evaluation and of training without a curriculum");
   t->AddOptional(
       "deploy", config::Enum(&c->deploy, {"around", "point", "area"}), "around", config::kNone, "-",
@@ -34,9 +62,8 @@ void Describe(ResetConfig* c, config::Table* t) {
          "AUVs start at least this far from each other");
   t->Add("start_half_extent_m", &c->start_half_extent_m, config::Positive(1e5), "m, world ENU",
          "AUVs start within +- this value on each axis");
-  const char* names[] = {"easy", "medium", "hard"};
   for (std::size_t i = 0; i < c->stages.size(); ++i) {
-    t->Section(std::string("reset.stages.") + names[i]);
+    t->Section("reset.stages." + kStageNames[i]);
     t->Add("target_radius_m", &c->stages[i].target_radius_m, config::NonNegative(1e5), "m",
            "[low, high] distance of a target from the origin of the world");
     t->Add("auv_distance_m", &c->stages[i].auv_distance_m, config::NonNegative(1e5), "m",
@@ -44,6 +71,7 @@ void Describe(ResetConfig* c, config::Table* t) {
     t->Add("target_speed_mps", &c->stages[i].target_speed_mps, config::NonNegative(10), "m/s",
            "[low, high] speed of a target, in a uniformly drawn direction");
   }
+  OwnStages(c, t);
 }
 
 }  // namespace stg::dynamics

@@ -6,6 +6,25 @@
 #include <vector>
 
 namespace stg::dynamics {
+namespace {
+
+template <std::size_t N>
+bool AnyOf(const std::array<double, N>& values) {
+  return std::any_of(values.begin(), values.end(), [](double v) { return v != 0.0; });
+}
+
+/// Keys that have an effect only if other keys are not zero.
+config::Owner Only(const std::string& kind, const std::string& with, const std::string& without,
+                   const std::string& key, const std::function<bool()>& has,
+                   const std::vector<std::string>& other_keys = {}) {
+  return {kind,
+          {with},
+          key,
+          [=] { return std::vector<std::string>{has() ? with : without}; },
+          other_keys};
+}
+
+}  // namespace
 
 using config::kFraction;
 using config::NonNegative;
@@ -45,7 +64,21 @@ void Describe(CurrentConfig* c, config::Table* t) {
       }};
   t->Own("current.random_turn_deg", drawn);
   t->Own("current.random_tide_mps", drawn);
+  t->Own("current.layer_depth_m",
+         Only("current", "in layers", "without layers", "current.layer_east_mps",
+              [c] { return c->layered() || c->random(); },
+              {"current.layer_north_mps", "current.random_mps"}));
+  t->Own("current.tide_period_s",
+         Only("current", "with a tide", "without a tide", "current.tide_mps",
+              [c] { return c->tidal() || (c->random() && c->random_tide_mps > 0.0); },
+              {"current.random_mps", "current.random_tide_mps"}));
+  t->Own("current.tide_phase_rad", Only("current", "with a given tide", "without a given tide",
+                                        "current.tide_mps", [c] { return c->tidal(); }));
 }
+
+bool CurrentConfig::layered() const { return AnyOf(layer_east_mps) || AnyOf(layer_north_mps); }
+
+bool CurrentConfig::tidal() const { return AnyOf(tide_mps); }
 
 double CurrentConfig::largest_mps() const {
   double layer = 0.0;
@@ -74,6 +107,10 @@ void Describe(DisturbanceConfig* c, config::Table* t) {
          "standard deviation of each moment component of w; 0: none");
   t->Add("correlation_time_s", &c->correlation_time_s, config::Positive(1e5), "s",
          "correlation time of the Gauss-Markov disturbance");
+  t->Own("disturbance.correlation_time_s",
+         Only("disturbance", "by force or moment", "none", "disturbance.force_std_n",
+              [c] { return c->force_std_n > 0.0 || c->moment_std_nm > 0.0; },
+              {"disturbance.moment_std_nm"}));
 }
 
 void Describe(ContactConfig* c, config::Table* t) {
@@ -82,6 +119,8 @@ void Describe(ContactConfig* c, config::Table* t) {
          "contact force per metre of the softplus overlap; 0: AUVs pass through each other");
   t->Add("softness_m", &c->softness_m, config::Positive(1), "m",
          "length over which the contact force sets in");
+  t->Own("contact.softness_m", Only("contact", "with a force", "without a force",
+                                    "contact.stiffness", [c] { return c->stiffness > 0.0; }));
 }
 
 void Describe(WorkspaceConfig* c, config::Table* t) {

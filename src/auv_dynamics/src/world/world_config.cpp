@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "auv_common/config/value.hpp"
+#include "auv_common/names.hpp"
 #include "auv_dynamics/autopilot/autopilot.hpp"
+#include "auv_dynamics/vehicle/vehicle.hpp"
 
 namespace stg::dynamics {
 namespace {
@@ -27,6 +29,7 @@ std::optional<Violation> CheckStage(const WorldConfig& s, int agents, int index)
   const char* const names[] = {"easy", "medium", "hard"};
   const std::string path = std::string("reset.stages.") + names[index] + ".";
   const ResetStageConfig& stage = s.reset.stages[static_cast<std::size_t>(index)];
+  const Deploy deploy = s.reset.deploy;
   if (stage.target_radius_m.hi > s.workspace.half_extent_m) {
     return Violation{{path + "target_radius_m", "workspace.half_extent_m"},
                      "a target would start outside the walls"};
@@ -35,17 +38,37 @@ std::optional<Violation> CheckStage(const WorldConfig& s, int agents, int index)
     return Violation{{path + "target_speed_mps", "target.max_speed_mps"},
                      "a target would start faster than its largest speed"};
   }
-  if (stage.auv_distance_m.lo > s.reset.start_half_extent_m) {
+  if (deploy != Deploy::kArea && stage.auv_distance_m.lo > s.reset.start_half_extent_m) {
     return Violation{{path + "auv_distance_m", "reset.start_half_extent_m"},
                      "AUVs cannot start this far from a target within the start region"};
   }
-  const bool used = s.reset.deploy == Deploy::kAround &&
-                    (s.reset.curriculum || static_cast<int>(s.reset.stage) == index);
-  if (used && !StartsFit(s.reset, stage, agents)) {
+  if (deploy == Deploy::kAround && !StartsFit(s.reset, stage, agents)) {
     return Violation{{"agents", path + "auv_distance_m", "reset.min_separation_m"},
                      "so many AUVs do not fit around a target at this separation"};
   }
   return {};
+}
+
+/// Keys of other sections that not all vehicles read.
+void OwnByVehicle(WorldConfig* c, config::Table* t) {
+  const std::vector<std::string> models = Vehicles().Names(), steered = Autopilots().Names();
+  const auto own = [c, t](const std::string& key, const std::vector<std::string>& names) {
+    t->Own(key, VehicleOwner(&c->vehicle, names));
+  };
+  // Forces do not move a kinematic vehicle.
+  for (const char* section : {"disturbance", "contact"}) {
+    own(section, Without(models, {"kinematic"}));
+  }
+  for (const char* key :
+       {"velocity_gain", "attitude_gain", "rate_gain", "heading", "heading_gain"}) {
+    own(std::string("control.") + key, Without(models, steered));
+  }
+  own("control.autopilot", steered);
+  // A kinematic vehicle follows the command itself, so these loops do not exist.
+  for (const char* key : {"speed_integral_ps", "turn_gain_ps", "turn_integral_ps2", "max_pitch_rad",
+                          "climb_integral_ps", "pitch_frequency_radps", "pitch_integral_ps3"}) {
+    own(std::string("control.autopilot.") + key, Without(steered, {"kinematic"}));
+  }
 }
 
 }  // namespace
@@ -57,16 +80,15 @@ void Describe(WorldConfig* c, config::Table* t) {
   Describe(&c->contact, t);
   Describe(&c->workspace, t);
   Describe(&c->sea, t);
+  for (const char* key : {"restitution", "tangential", "body_velocity", "body_rate"}) {
+    t->Own(std::string("workspace.") + key, WallsOwner(&c->sea));
+  }
   Describe(&c->target, t);
   Describe(&c->reset, t);
   Describe(&c->navigation, t);
   Describe(&c->sensing, t);
   Describe(&c->control, t);
-  t->Own("control.autopilot", {"vehicle", Autopilots().Names(), "vehicle.model", [c] {
-                                 return c->vehicle.models.empty()
-                                            ? std::vector<std::string>{c->vehicle.model}
-                                            : c->vehicle.models;
-                               }});
+  OwnByVehicle(c, t);
 }
 
 const std::vector<std::string>& KeysOnBoard() {
@@ -161,6 +183,7 @@ std::optional<config::Violation> FindConflict(const WorldConfig& s, const RunCon
                      "in a closed basin AUVs start around their targets"};
   }
   for (int i = 0; i < 3; ++i) {
+    if (!s.reset.curriculum && static_cast<int>(s.reset.stage) != i) continue;
     if (auto violation = CheckStage(s, run.agents, i)) return violation;
   }
   return {};

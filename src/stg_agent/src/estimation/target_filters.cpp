@@ -86,7 +86,7 @@ std::optional<config::Violation> FindLocalizationConflict(const AgentModel& s) {
       return config::Violation{{"stations.beacons", "stations.crafts", "localization.kind"},
                                "only a localizer uses stations: set localization.kind"};
     }
-    if (dynamics::ReckonsPosition(s.navigation) &&
+    if (dynamics::ReckonsPosition(s.navigation) && s.navigation.gps_depth_m > 0.0 &&
         s.navigation.fixes == dynamics::FixUse::kReported) {
       return config::Violation{{"navigation.dead_reckoning.fixes", "localization.kind"},
                                "only a localizer uses reported fixes: set localization.kind"};

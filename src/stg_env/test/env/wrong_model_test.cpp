@@ -138,8 +138,7 @@ TEST(WrongModel, EveryKeyIsTried) {
 
 /// The command is force and moment, so what agents believe changes no true state.
 TEST(WrongModel, LeavesTheTruthAlone) {
-  const Scenario s =
-      Short(Shipped("medium", "nominal", {"control.interface=tau6", "control.smoothing=0"}), 30);
+  const Scenario s = Short(Shipped("medium", "nominal", {"control.interface=tau6"}), 30);
   Scenario wrong = s;
   config::Override(&wrong, {"believed.sensing.range_m=0.2", "believed.target.max_speed_mps=0.002",
                             "believed.vehicle.max_velocity_mps=[1.0,0.4,0.4]"});

@@ -26,6 +26,8 @@ struct SeaConfig {
 
 /// Keys, units and ranges of the section `sea`, which a file may leave out.
 void Describe(SeaConfig* c, config::Table* t);
+/// Owner of keys that only a world with walls reads.
+config::Owner WallsOwner(const SeaConfig* c);
 /// The file of a bathymetry. A name that ends in .nc is the file itself. Otherwise <name>.nc is
 /// searched in the folders of $STG_TERRAINS (separated by colons), and then in `terrain` beside the
 /// folder of the shipped scenarios. Throws UserError that names the folders if there is no such

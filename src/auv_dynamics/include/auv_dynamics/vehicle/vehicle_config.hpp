@@ -58,6 +58,8 @@ struct VehicleConfig {
 
 /// Keys, units and ranges of the section.
 void Describe(VehicleConfig* c, config::Table* t);
+/// Owner of keys that only these vehicle models read.
+config::Owner VehicleOwner(const VehicleConfig* c, std::vector<std::string> models);
 /// Contradictions between its keys.
 std::optional<config::Violation> FindConflict(const VehicleConfig& c);
 

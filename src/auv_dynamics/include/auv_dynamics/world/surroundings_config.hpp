@@ -25,6 +25,8 @@ struct CurrentConfig {
   double random_tide_mps = 0.0;   ///< amplitude; its direction is drawn, too
 
   bool random() const { return random_mps.hi > 0.0; }
+  bool layered() const;  ///< any of the layers' velocities is not zero
+  bool tidal() const;    ///< the tide that is not drawn is not zero
   /// No current of an episode is faster than this: the sum of the largest speeds of all parts
   /// [m/s].
   double largest_mps() const;
