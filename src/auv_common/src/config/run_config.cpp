@@ -21,8 +21,19 @@ void DescribeTop(RunConfig* c, config::Table* t) {
   t->Section("");
   t->Add("name", &c->name, config::kNone, "-", "label of the scenario in results");
   t->Add("seed", &c->seed, config::kNone, "-",
-         "seed of all random numbers, unless the command line gives another");
+         "seed of the network of channel.launch and of the water of emulated modems; a simulation "
+         "has the seed of its command instead");
   t->Add("agents", &c->agents, config::Within(1, 255), "-", "number of AUVs N");
+}
+
+void TakeSeedFromCommand(config::Table* t) {
+  config::Owner owner{
+      "program", {"network"}, "seed", [] { return std::vector<std::string>{"simulation"}; }};
+  owner.files_state_all = true;  // one file may serve a network and a simulation
+  owner.refusal =
+      "a simulation does not read this key; set the option --seed of the program, the argument "
+      "seed:= of the launch file, or seed= in Python";
+  t->Own("seed", owner);
 }
 
 void Describe(RunConfig* c, config::Table* t) {

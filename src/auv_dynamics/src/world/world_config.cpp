@@ -191,6 +191,7 @@ std::optional<config::Violation> FindConflict(const WorldConfig& s, const RunCon
 
 void Describe(WorldScenario* s, config::Table* t) {
   Describe(&s->run, t);
+  TakeSeedFromCommand(t);
   Describe(&s->world, t);
   t->Differ("believed", KeysOnBoard(), &s->agent_model);
 }

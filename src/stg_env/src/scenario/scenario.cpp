@@ -10,6 +10,7 @@ void Scenario::ValidateOrThrow() const { config::ValidateOrThrow(*this); }
 
 void Describe(Scenario* s, config::Table* t) {
   DescribeTop(&s->run, t);
+  TakeSeedFromCommand(t);
   t->Add("mode", config::Enum(&s->mode, {"truth", "acoustic"}), config::kNone, "-",
          "what agents know. truth: true states; acoustic: own sensors and received packets");
   Describe(&s->run.time, t);

@@ -221,7 +221,7 @@ TEST_F(ScenarioInput, AKeyOfAThingThatWasNotChosenIsRefusedWithTheChoice) {
     int refused = 0;
     for (const config::Field& field : ScenarioFields(&copy)) {
       const config::Owner* owner = field.Unchosen();
-      if (owner == nullptr) continue;
+      if (owner == nullptr || !owner->refusal.empty()) continue;
       ++refused;
       const auto* of_model = std::get_if<config::DifferenceRef>(&field.value);
       const std::string value =

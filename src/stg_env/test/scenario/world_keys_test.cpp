@@ -212,5 +212,16 @@ TEST_F(ScenarioInput, StagesThatWereNotChosenStayInFiles) {
             std::string::npos);
 }
 
+TEST_F(ScenarioInput, TheSeedOfASimulationIsNoOverride) {
+  const std::string message = ErrorOf([&] { Load("medium", {"seed=5"}); });
+  EXPECT_EQ(message.rfind("--set 'seed=5': seed: a simulation does not read this key", 0), 0u)
+      << message;
+  EXPECT_NE(message.find("--seed"), std::string::npos) << message;
+  // A file may state the seed, because channel.launch reads the same file.
+  const std::string overlay = Write("overlay.yaml", "seed: 5\n");
+  const std::string base = Write("base.yaml", ToYaml(Scenario{}));
+  EXPECT_EQ(LoadScenario(base, {overlay}).run.seed, 5u);
+}
+
 }  // namespace
 }  // namespace stg::scenario_test

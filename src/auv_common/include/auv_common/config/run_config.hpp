@@ -49,6 +49,8 @@ inline bool IsWholeDecisions(double period_s, double decision_dt_s) {
 void Describe(TimeConfig* c, config::Table* t);
 /// Adds the keys of RunConfig at the top level.
 void DescribeTop(RunConfig* c, config::Table* t);
+/// Refuses an override of the key `seed`, because a simulation has the seed of its command.
+void TakeSeedFromCommand(config::Table* t);
 /// Adds all keys of RunConfig.
 void Describe(RunConfig* c, config::Table* t);
 /// Contradictions between the keys.
