@@ -98,10 +98,13 @@ void Describe(VehicleConfig* c, config::Table* t) {
          "integrator steps per physics step");
   t->Add("radius_m", &c->radius_m, config::Positive(100), "m", "collision radius of one AUV");
   const std::vector<std::string> models = Vehicles().Names();
-  for (const char* key : {"clip_velocity", "integrator", "substeps"}) {
+  for (const char* key : {"integrator", "substeps"}) {
     t->Own(std::string("vehicle.") + key, VehicleOwner(c, Without(models, {"kinematic"})));
   }
-  t->Own("vehicle.max_tau", VehicleOwner(c, Without(models, {"torpedo", "kinematic"})));
+  for (const char* key : {"clip_velocity", "max_tau"}) {
+    t->Own(std::string("vehicle.") + key,
+           VehicleOwner(c, Without(models, {"torpedo", "kinematic"})));
+  }
   t->Own("vehicle.model", {"fleet", {"of one model"}, "vehicle.models", [c] {
                              return std::vector<std::string>{
                                  c->models.empty() ? "of one model" : "of models in turn"};
