@@ -9,10 +9,12 @@
 namespace stg::config {
 namespace {
 
-/// 'a' or 'b'; "none" if there are no names.
-std::string QuotedNames(const std::vector<std::string>& names) {
+/// 'a' or 'b', with this word between names; "none" if there are no names.
+std::string QuotedNames(const std::vector<std::string>& names, const std::string& word) {
   std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "'" : " or '") + name + "'";
+  for (const std::string& name : names) {
+    text += (text.empty() ? "'" : " " + word + " '") + name + "'";
+  }
   return text.empty() ? "none" : text;
 }
 
@@ -26,8 +28,8 @@ bool Owner::IsChosen() const {
 
 std::string Owner::WhyUnread(const std::string& chooser, const std::string& by) const {
   if (!refusal.empty()) return refusal;
-  return "belongs to the " + kind + " " + QuotedNames(names) + "; " + chooser + " chose " +
-         QuotedNames(chosen()) + " (" + by + ")";
+  return "belongs to the " + kind + " " + QuotedNames(names, "or") + "; " + chooser + " chose " +
+         QuotedNames(chosen(), "and") + " (" + by + ")";
 }
 
 const Owner* Field::Unchosen() const {

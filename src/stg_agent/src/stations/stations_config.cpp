@@ -36,12 +36,16 @@ void Describe(StationsConfig* c, config::Table* t) {
                            return std::vector<std::string>{rows->empty() ? "none" : name};
                          }};
   };
-  t->Own("stations.usbl_std_deg", {"stations", {"beacons", "crafts"}, "stations.crafts", [c] {
+  t->Own("stations.usbl_std_deg", {"stations",
+                                   {"beacons", "crafts"},
+                                   "stations.crafts",
+                                   [c] {
                                      std::vector<std::string> names;
                                      if (!c->beacons.empty()) names.emplace_back("beacons");
                                      if (!c->crafts.empty()) names.emplace_back("crafts");
                                      return names;
-                                   }});
+                                   },
+                                   {"stations.beacons"}});
   t->Own("stations.survey_std_m", owner("beacons", &c->beacons));
   for (const char* key : {"craft_speed_mps", "craft_circle_m", "gps_std_m", "gps_memory_s"}) {
     t->Own(std::string("stations.") + key, owner("crafts", &c->crafts));
