@@ -36,6 +36,14 @@ TimeNs RoundOf(const ChannelConfig& config, const RunConfig& run) {
   return access->Next(0, turn + 1, {}) - turn;
 }
 
+double SlotOfKeys(const ChannelConfig& c) {
+  return c.access == "tdma" || c.access == "slotted_aloha" ? c.slots.length_s : 0.0;
+}
+
+double RoundOfKeys(const ChannelConfig& c, int nodes) {
+  return c.access == "periodic" ? c.transmit_period_s : SlotOfKeys(c) * nodes;
+}
+
 Turns::Turns(const ChannelConfig& config, const RunConfig& run)
     : access_(MakeMediumAccess(config, run)),
       period_(run.decision_period()),

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "acoustic_channel/access/medium_access.hpp"
 #include "auv_common/numbers/assignment.hpp"
 
 namespace stg::agent {
@@ -25,8 +26,9 @@ struct Member {
 /// The known AUVs of the swarm, the own one first.
 int Muster(const AgentView& agent, double silent_frames, Member* members) {
   const AgentModel& model = agent.model();
-  const double frame_s = model.channel.slots.length_s * model.run.agents;
-  const double silent_s = silent_frames * std::max(frame_s, model.sensing.period_s);
+  // Without turns, e.g. with `csma`, the looks of the sensor are the measure.
+  const double frame_s = acoustics::RoundOfKeys(model.channel, model.run.agents);
+  const double silent_s = silent_frames * std::max(frame_s, model.look_period_s());
   int count = 0;
   members[count++] = {agent.knowledge().p_WB, agent.target()};
   for (const int id : agent.neighbours().known()) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <complex>
 
+#include "acoustic_channel/access/medium_access.hpp"
 #include "auv_common/numbers/attitude.hpp"
 #include "stg_agent/graph/features.hpp"
 
@@ -102,8 +103,9 @@ void PutSelf(const EntityInput& in, const Frame& K, float* out) {
   row.Put(std::log(1.0 + in.neighbour_count) / 3.0);
   const int targets = std::min((in.belief.started ? 1 : 0) + in.other_count, kTargetRows);
   row.Put(std::log(1.0 + targets) / 2.0);
-  const double slot = m.channel.slots.length_s, frame = slot * m.run.agents;
-  const bool turns = frame > 0.0;  // as if slots were in turn, for any access
+  // As if the AUVs took the slots in turn. Without slots, e.g. with `csma`, the numbers are 0.
+  const double slot = acoustics::SlotOfKeys(m.channel), frame = slot * m.run.agents;
+  const bool turns = frame > 0.0;
   const double since = turns ? std::fmod(now - slot * in.id + frame * 4096.0, frame) : 0.0;
   row.Put(turns ? AgeScale(since) : 0.0F).Put(turns ? 1.0 - since / frame : 0.0);
   int silent = 0;

@@ -66,6 +66,11 @@ std::unique_ptr<MediumAccess> MakeMediumAccess(const ChannelConfig& config, cons
 
 /// Time between two turns of a node; 0 if it depends on what the node sent.
 TimeNs RoundOf(const ChannelConfig& config, const RunConfig& run);
+/// Time between two turns of a node [s], as the keys of the chosen medium access state it: a round
+/// of slots, or the period of `periodic`; 0 for an access without turns.
+double RoundOfKeys(const ChannelConfig& c, int nodes);
+/// Length of a slot [s]; 0: the chosen medium access has no slots.
+double SlotOfKeys(const ChannelConfig& c);
 
 /// The times at which packets that are offered at decisions can leave. Modems and agents compute
 /// the same times, so an agent need not make a packet that cannot leave.
