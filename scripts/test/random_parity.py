@@ -77,7 +77,6 @@ NUMBERS = {
     "sensing.range.field_of_view_deg": (30.0, 360.0),
     "sensing.bearing.bearing_std_deg": (0.5, 20.0),
     "navigation.dead_reckoning.heading_std_deg": (0.0, 10.0),
-    "channel.physical.modem.clock_offset_std_s": (0.0, 5.0),
     "channel.physical.noise.burst_every_s": (1.0, 20.0),
     "channel.physical.noise.site_db": (0.0, 110.0),
     "channel.contention.rest_s": (0.0, 3.0),
@@ -134,6 +133,10 @@ def draw(seed):
     if r.random() < 0.3:  # with long decisions
         keys.update({"time.decision_steps": r.choice((20, 60, 120)), "sensing.period_s": 0.0,
                      "channel.periodic.transmit_period_s": 120.0})
+    if keys.get("channel.model") == "range":
+        keys["channel.range_m"] = 0.45 * scale
+    if "reward.weights.separation" in keys:
+        keys["reward.separation_distance_m"] = 0.024 * scale
     for section, (chooser, names) in THINGS.items():
         if keys.get(chooser) not in names:  # keys that nothing reads would be refused
             keys = {k: v for k, v in keys.items() if not k.startswith(section + ".")}

@@ -1,5 +1,7 @@
 #include "acoustic_channel/channel_config.hpp"
 
+#include <algorithm>
+
 #include "acoustic_channel/access/medium_access.hpp"
 #include "acoustic_channel/models/propagation_model.hpp"
 
@@ -15,6 +17,12 @@ void Describe(ChannelConfig* c, config::Table* t) {
          "communication range R_c of Eq. 5, for the model range and for links in the mode truth");
   const auto describe = [](auto* options, config::Table* table) { Describe(options, table); };
   const auto model = [c] { return std::vector<std::string>{c->model}; };
+  // A registered model may read the range, too.
+  std::vector<std::string> by_range = PropagationModels().Names();
+  for (const char* other : {"extended", "physical"}) {
+    by_range.erase(std::find(by_range.begin(), by_range.end(), other));
+  }
+  t->Own("channel.range_m", {"propagation model", by_range, "channel.model", model});
   const auto of_model = [&](const char* name) {
     return config::Owner{"propagation model", {name}, "channel.model", model};
   };

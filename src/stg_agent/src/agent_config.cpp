@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "acoustic_channel/models/propagation_model.hpp"
 #include "auv_common/config/value.hpp"
@@ -112,11 +113,51 @@ void Describe(AgentConfig* c, config::Table* t) {
   Describe(&c->stations, t);
 }
 
+void OwnAcrossSections(const dynamics::WorldConfig* world, const AgentConfig* agent,
+                       config::Table* t) {
+  using Names = std::vector<std::string>;
+  t->Own("task.lost_error_m", {"world", {"open water"}, "sea.open", [world] {
+                                 return Names{world->sea.open ? "open water" : "walls"};
+                               }});
+  const auto shadows = [world] {
+    const dynamics::SeaConfig& sea = world->sea;
+    Names names;
+    if (sea.open && sea.terrain != "flat") names.emplace_back("terrain");
+    if (sea.open && !(sea.spheres.empty() && sea.cylinders.empty()))
+      names.emplace_back("obstacles");
+    return names;
+  };
+  t->Own("channel.physical.propagation.shadow_db", {"sea",
+                                                    {"terrain", "obstacles"},
+                                                    "sea.terrain",
+                                                    shadows,
+                                                    {"sea.spheres", "sea.cylinders", "sea.open"}});
+  // Agents use the times of their modems only if they measure ranges with them.
+  const auto ranging = [world, agent] {
+    Names names;
+    if (agent->localization.kind != "uncorrected") {
+      names.emplace_back(agent->localization.by == RangesBy::kPing ? "ping" : "one_way");
+    }
+    if (world->sensing.pings()) names.emplace_back("ping");
+    return names;
+  };
+  for (const char* key : {"clock_offset_std_s", "clock_drift_std_ppm", "timing_std_s",
+                          "late_probability", "late_max_s"}) {
+    t->Own(std::string("channel.physical.modem.") + key,
+           {"ranging",
+            {"one_way", "ping"},
+            "localization.kind",
+            ranging,
+            {"localization.ranges.by", "sensing.ranging"}});
+  }
+}
+
 void Describe(AgentScenario* s, config::Table* t) {
   Describe(&s->run, t);
   Describe(&s->world, t);
   Describe(&s->channel, t);
   Describe(&s->agent, t);
+  OwnAcrossSections(&s->world, &s->agent, t);
   t->Differ("believed", KeysOfModel(), &s->agent_model);
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "acoustic_channel/modem/packet.hpp"
 #include "auv_common/error.hpp"
@@ -177,6 +179,19 @@ void Describe(ModemConfig* c, config::Table* t) {
       "source_level_offset_db", &c->source_level_offset_db, "0.0", config::Within(-60.0, 60.0),
       "dB",
       "added to the source level of every profile; the energy of a transmission does not change");
+  const std::string section = "channel.physical.modem.";
+  t->Own(section + "profile",
+         {"fleet", {"alike"}, section + "profiles", [c] {
+            return std::vector<std::string>{c->profiles.empty() ? "alike" : "mixed"};
+          }});
+  t->Own(section + "queue_length",
+         {"queue", {"fifo"}, section + "queue", [c] {
+            return std::vector<std::string>{c->queue == QueuePolicy::kFifo ? "fifo" : "newest"};
+          }});
+  t->Own(section + "late_max_s",
+         {"late arrivals", {"on"}, section + "late_probability", [c] {
+            return std::vector<std::string>{c->late_probability > 0.0 ? "on" : "off"};
+          }});
 }
 
 TimeNs ModemProfile::airtime(std::size_t bytes) const {

@@ -5,6 +5,9 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "acoustic_channel/channel/channel.hpp"
 #include "acoustic_channel/models/propagation_model.hpp"
@@ -252,6 +255,23 @@ void ReadNodes(const std::string& file, const Reader& reader, SimulationFile* si
             [](const SimulatedNode& a, const SimulatedNode& b) { return a.id < b.id; });
 }
 
+/// Lets keys of the channel belong to what only swarms of AUVs have.
+void OwnByOthers(config::Table* t) {
+  const auto own = [t](const std::string& key, const char* kind, std::vector<std::string> names) {
+    t->Own("channel." + key, {kind, std::move(names), "simulate has none",
+                              [] { return std::vector<std::string>(); }});
+  };
+  own("physical.propagation.shadow_db", "sea", {"terrain", "obstacles"});
+  for (const char* key : {"clock_offset_std_s", "clock_drift_std_ppm", "timing_std_s",
+                          "late_probability", "late_max_s"}) {
+    own(std::string("physical.modem.") + key, "ranging", {"one_way", "ping"});
+  }
+  for (const char* key : {"range.freshness_s", "extended.attenuation_per_m", "extended.freshness_s",
+                          "physical.modem.freshness_s"}) {
+    own(key, "link quality", {"of agents"});
+  }
+}
+
 }  // namespace
 
 RunConfig SimulationFile::Run() const {
@@ -274,6 +294,7 @@ SimulationFile LoadSimulation(const std::string& path) {
   t->Add("seed", &simulation.seed, config::kNone, "-", "");
   t->Add("step_s", &simulation.step_s, config::Within(1e-3, 10.0), "s", "");
   Describe(&simulation.channel, t);
+  OwnByOthers(t);
   const config::Loader& loader = reader.Read({"nodes", "traffic"});
   for (const char* key : {"duration_s", "channel", "nodes", "traffic"}) reader.Require(key);
   ReadNodes(path, reader, &simulation);

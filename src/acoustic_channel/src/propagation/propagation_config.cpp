@@ -1,5 +1,9 @@
 #include "acoustic_channel/propagation/propagation_config.hpp"
 
+#include <string>
+#include <utility>
+#include <vector>
+
 namespace stg::acoustics {
 
 void Describe(PropagationConfig* c, config::Table* t) {
@@ -26,6 +30,25 @@ void Describe(PropagationConfig* c, config::Table* t) {
          "standard deviation of the slow fading of a link");
   t->Add("shadowing_time_s", &c->shadowing_time_s, config::Positive(1e6), "s",
          "time in which the autocorrelation of the slow fading falls to 1/e");
+  const std::string section = "channel.physical.propagation.";
+  const auto own = [&](const char* key, std::vector<std::string> names) {
+    t->Own(section + key, {"sound paths", std::move(names), section + "paths", [c] {
+                             std::vector<std::string> paths{"direct"};
+                             if (c->paths == 1) return std::vector<std::string>{"direct alone"};
+                             if (c->paths > 1) paths.emplace_back("surface");
+                             if (c->paths > 2) paths.emplace_back("bottom");
+                             return paths;
+                           }});
+  };
+  own("rician_k", {"direct alone"});
+  own("wave_height_rms_m", {"surface"});
+  for (const char* key : {"bottom_density_ratio", "bottom_speed_ratio", "bottom_loss_db"}) {
+    own(key, {"bottom"});
+  }
+  t->Own(section + "shadowing_time_s",
+         {"slow fading", {"on"}, section + "shadowing_db", [c] {
+            return std::vector<std::string>{c->shadowing_db > 0.0 ? "on" : "off"};
+          }});
 }
 
 }  // namespace stg::acoustics

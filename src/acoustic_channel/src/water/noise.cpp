@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include "acoustic_channel/modem/error_rate.hpp"
 
@@ -24,6 +26,12 @@ void Describe(NoiseConfig* c, config::Table* t) {
          "next; 0: no bursts");
   t->Add("burst_length_s", &c->burst_length_s, config::Within(1e-3, 1e6), "s",
          "mean length of a burst");
+  const std::string section = "channel.physical.noise.";
+  for (const char* key : {"burst_db", "burst_length_s"}) {
+    t->Own(section + key, {"noise bursts", {"on"}, section + "burst_every_s", [c] {
+                             return std::vector<std::string>{c->burst_every_s > 0.0 ? "on" : "off"};
+                           }});
+  }
 }
 
 double TurbulenceNoise(double khz) { return 17.0 - 30.0 * std::log10(khz); }

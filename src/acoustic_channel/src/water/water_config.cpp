@@ -1,5 +1,8 @@
 #include "acoustic_channel/water/water_config.hpp"
 
+#include <string>
+#include <vector>
+
 namespace stg::acoustics {
 
 void Describe(WaterConfig* c, config::Table* t) {
@@ -25,6 +28,25 @@ void Describe(WaterConfig* c, config::Table* t) {
       "absorption", config::Enum(&c->absorption, {"thorp", "francois_garrison"}), "thorp",
       config::kNone, "-",
       "formula of the absorption of sound; thorp is for 4 deg C, whatever the temperature");
+  const std::string water = "channel.physical.water.";
+  const std::string speed = water + "sound_speed", absorption = water + "absorption";
+  const auto chosen = [c] {
+    return std::vector<std::string>{
+        c->sound_speed == WaterConfig::SoundSpeed::kProfile ? "profile" : "mackenzie",
+        c->absorption == WaterConfig::Absorption::kThorp ? "thorp" : "francois_garrison"};
+  };
+  for (const char* key : {"temperature_c", "salinity_psu"}) {
+    t->Own(water + key,
+           {"formula", {"mackenzie", "francois_garrison"}, speed, chosen, {absorption}});
+  }
+  t->Own(water + "ph", {"absorption", {"francois_garrison"}, absorption, [chosen] {
+                          return std::vector<std::string>{chosen().back()};
+                        }});
+  for (const char* key : {"profile_depths_m", "profile_speeds_mps"}) {
+    t->Own(water + key, {"sound speed", {"profile"}, speed, [chosen] {
+                           return std::vector<std::string>{chosen().front()};
+                         }});
+  }
 }
 
 std::optional<config::Violation> FindConflict(const WaterConfig& c) {

@@ -94,6 +94,11 @@ void Describe(TaskConfig* c, config::Table* t);
 void Describe(FleetConfig* c, config::Table* t);
 void Describe(AgentConfig* c, config::Table* t);
 
+/// Lets keys of one section belong to what another section chooses: the world, or the agents' way
+/// of measuring ranges. All sections must be in the table.
+void OwnAcrossSections(const dynamics::WorldConfig* world, const AgentConfig* agent,
+                       config::Table* t);
+
 /// Keys for which agents may have another value than the true one: dynamics::KeysOnBoard, and the
 /// keys of their link estimate.
 const std::vector<std::string>& KeysOfModel();

@@ -1,5 +1,9 @@
 #include "stg_agent/estimation/track_config.hpp"
 
+#include <algorithm>
+#include <string>
+#include <vector>
+
 #include "stg_agent/estimation/target_filter.hpp"
 
 namespace stg::agent {
@@ -57,6 +61,20 @@ void Describe(TrackConfig* c, config::Table* t) {
             "track.filter",
             [c] { return std::vector<std::string>{c->filter}; }},
            "track.measurements", c, DescribeMeasurements);
+  // A registered filter may read the keys of the filter `kalman`, too.
+  std::vector<std::string> others = TargetFilters().Names();
+  others.erase(std::find(others.begin(), others.end(), "measurements"));
+  for (const char* key : {"process_accel_std_mps2", "initial_speed_std_mps", "gate_sigma"}) {
+    t->Own(std::string("track.") + key, {"target filter", others, "track.filter",
+                                         [c] { return std::vector<std::string>{c->filter}; }});
+  }
+  for (const char* key : {"shear_std_mps", "shear_memory_s"}) {
+    t->Own(std::string("track.measurements.") + key,
+           {"observers' errors", {"rates"}, "track.measurements.observers", [c] {
+              const char* const names[] = {"steps", "rates", "located"};
+              return std::vector<std::string>{names[static_cast<int>(c->observers)]};
+            }});
+  }
   for (const char* key : {"velocity_std_mps", "velocity_memory_s", "memory_s", "share_spacing_s",
                           "observers", "shear_std_mps", "shear_memory_s"}) {
     t->Moved(std::string("track.") + key, std::string("track.measurements.") + key);

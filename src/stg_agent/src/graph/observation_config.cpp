@@ -1,5 +1,8 @@
 #include "stg_agent/graph/observation_config.hpp"
 
+#include <string>
+#include <vector>
+
 namespace stg::agent {
 
 void Describe(ObservationConfig* c, config::Table* t) {
@@ -44,6 +47,16 @@ void Describe(ObservationConfig* c, config::Table* t) {
                             }};
   t->Own("observation.links", graph);
   t->Own("observation.roles", graph);
+  t->Own("observation.role_confidence",
+         {"roles", {"true"}, "observation.roles", [c] {
+            return std::vector<std::string>{c->roles ? "true" : "false"};
+          }});
+  const config::Owner tracking{"tracking numbers", {"true"}, "observation.tracking", [c] {
+                                 return std::vector<std::string>{c->tracking ? "true" : "false"};
+                               }};
+  for (const char* key : {"distance_scale_m", "lost_scale_steps"}) {
+    t->Own(std::string("observation.") + key, tracking);
+  }
   t->Moved("observation.link_radius_m", "channel.range_m");
 }
 

@@ -3,6 +3,7 @@
 #include "auv_common/config/files.hpp"
 #include "auv_common/config/loader.hpp"
 #include "auv_common/error.hpp"
+#include "stg_env/task/reward_term.hpp"
 
 namespace stg {
 
@@ -24,13 +25,24 @@ void Describe(Scenario* s, config::Table* t) {
                                  const bool truth = s->mode == InformationMode::kTruth;
                                  return std::vector<std::string>{truth ? "truth" : "acoustic"};
                                }};
-  for (const char* section : {"channel", "navigation", "sensing", "track"}) {
-    t->Own(section, acoustic);
+  for (const char* key : {"channel", "navigation", "sensing", "track", "localization", "stations",
+                          "task.lost_error_m"}) {
+    t->Own(key, acoustic);
   }
-  // A run of nodes has always the mode `acoustic`. It may read these keys of the same file.
-  for (const char* key : {"channel.model", "channel.access", "navigation.kind", "sensing.sensor",
-                          "track.filter", "channel.range_m", "sensing.range_m"}) {
-    t->AlsoReadIf(key, [] { return true; });
+  const auto truth = [s] { return s->mode == InformationMode::kTruth; };
+  t->AlsoReadIf("channel.range_m", truth);
+  t->AlsoReadIf("sensing.range_m", truth);
+  // A file may state the model that the links of this mode follow.
+  const std::string eq5 = "range";
+  t->AlsoReadIf("channel.model", [s, truth, eq5] { return truth() && s->channel.model == eq5; });
+  // A metric of open water counts the decisions in which two AUVs are closer.
+  t->AlsoReadIf("reward.separation_distance_m", [s] { return s->world.sea.open; });
+  agent::OwnAcrossSections(&s->world, &s->agent, t);
+  for (const std::string& term : task::TermsOfOpenWater()) {
+    t->Own("reward.terms." + term,
+           {"world", {"open water"}, "sea.open", [s] {
+              return std::vector<std::string>{s->world.sea.open ? "open water" : "walls"};
+            }});
   }
   t->Differ("believed", agent::KeysOfModel(), &s->agent_model);
 }

@@ -1,5 +1,8 @@
 #include "stg_env/task/reward_config.hpp"
 
+#include <string>
+#include <vector>
+
 #include "stg_env/task/judge_config.hpp"
 #include "stg_env/task/reward_term.hpp"
 
@@ -45,6 +48,17 @@ void Describe(RewardConfig* c, config::Table* t) {
          "the separation penalty is 0 where two AUVs are farther apart than this");
   t->Add("total_limit", &c->total_limit, config::Positive(1e6), "-",
          "an agent's total reward is clipped to +- this value");
+  const config::Owner eq30{"reward", {"paper", "release"}, "reward.kind", [c] {
+                             const char* const kinds[] = {"paper", "release", "release_raw"};
+                             return std::vector<std::string>{kinds[static_cast<int>(c->kind)]};
+                           }};
+  for (const char* key : {"w_band", "w_progress", "w_closing", "w_reacquire", "w_too_close"}) {
+    t->Own(std::string("reward.") + key, eq30);
+  }
+  t->Own("reward.separation_distance_m",
+         {"separation penalty", {"on"}, "reward.weights.separation", [c] {
+            return std::vector<std::string>{c->weights.separation > 0.0 ? "on" : "off"};
+          }});
   for (const std::string& name : RewardTermsByName().Names()) {
     const std::string section = "reward.terms." + name;
     t->Moved(section, section + ".weight");

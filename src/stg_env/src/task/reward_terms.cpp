@@ -15,4 +15,6 @@ RewardTermRegistry& RewardTermsByName() {
   return registry;
 }
 
+std::vector<std::string> TermsOfOpenWater() { return {"estimate", "obstacle", "seabed"}; }
+
 }  // namespace stg::task

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "auv_common/registry.hpp"
 #include "stg_env/task/swarm_state.hpp"
 
@@ -43,5 +46,8 @@ class TermOf : public RewardTerm {
 /// a program adds terms of its own before it loads a scenario.
 using RewardTermRegistry = Registry<const RewardTerm, const JudgeConfig&>;
 RewardTermRegistry& RewardTermsByName();
+
+/// Names of the suite's terms that are always 0 between walls.
+std::vector<std::string> TermsOfOpenWater();
 
 }  // namespace stg::task
