@@ -55,7 +55,8 @@ void RequireKeysOfVehicle(const std::vector<std::string>& overrides) {
                            "* of a scenario");
     }
     if (text.rfind(integrator, 0) == 0) {
-      throw stg::UserError("--set '" + text + "': use the option --integrator in place of this key");
+      throw stg::UserError("--set '" + text +
+                           "': use the option --integrator in place of this key");
     }
   }
 }
