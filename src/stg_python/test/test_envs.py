@@ -84,7 +84,7 @@ class Vector(unittest.TestCase):
             {"overrides": SHORT, "condition": ["nominal", "fast_target"]},
             {"overrides": SHORT, "rewards": "agent"},
             {"overrides": SHORT, "copy": False},
-            {"overrides": {**SHORT, "reset.curriculum": True}, "curriculum": True},
+            {"overrides": {**SHORT, "reset.curriculum": True}, "curriculum": False},
         ):
             with self.subTest(options):
                 contract.check_vector(lambda options=options: stg.vector_env("medium", 9, **options))
