@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draws docs/images/architecture.svg and .png from the includes of the code.
+"""Draws docs/images/architecture.svg from the includes of the code.
 
 A box is a package, in the layer above all that it includes; in it are its folders with the number
 of their sources and headers, each right of those that it includes. An arrow says how many lines
@@ -275,7 +275,7 @@ class Picture:
                 self.arrow(start + path, self.colour[package], count)
 
     def draw(self, stem):
-        """Writes stem.svg and stem.png."""
+        """Writes stem.svg."""
         height = self.place()
         figure = self.plt.figure(figsize=(self.WIDTH / 72, height / 72))
         self.axes = figure.add_axes([0, 0, 1, 1])
@@ -293,7 +293,6 @@ class Picture:
         )
         shape = json.dumps(self.house.shape(), sort_keys=True)
         figure.savefig(f"{stem}.svg", metadata={"Date": None, "Description": shape})
-        figure.savefig(f"{stem}.png", dpi=150, metadata={"Software": None})
 
 
 def drawn_shape(svg):
