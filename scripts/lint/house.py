@@ -263,7 +263,7 @@ def check_registries(source=SOURCE):
             for match in compared.finditer(line):
                 name = match.group(1) or match.group(2)
                 if name in names and path != names[name]:
-                    findings.append(f'src/{path}:{number}: "{name}" is for {names[name]} to know')
+                    findings.append(f'src/{path}:{number}: compares with "{name}", but only {names[name]} may use this name')
     return f"{len(names)} names", findings
 
 
@@ -282,7 +282,7 @@ def check_scenarios(source=SOURCE):
         text = "\n".join(lines)
         for match in WHOLE.finditer(text):
             number = text.count("\n", 0, match.start()) + 1
-            findings.append(f"src/{path}:{number}: takes a whole Scenario: take the sections it needs")
+            findings.append(f"src/{path}:{number}: the function takes a whole Scenario; it must take only the sections that it needs")
     return f"{looked_at} files", findings
 
 
@@ -296,5 +296,5 @@ def check_ranks(source=SOURCE):
         looked_at += 1
         for number, line in enumerate(lines, start=1):
             if ALONE.search(line):
-                findings.append(f"src/{path}:{number}: asks whether it is alone: {line.strip()}")
+                findings.append(f"src/{path}:{number}: treats a single process in its own way; treat it as the only rank: {line.strip()}")
     return f"{looked_at} files", findings
