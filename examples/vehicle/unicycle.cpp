@@ -1,11 +1,13 @@
-// A vehicle of your own, flown by World: it takes a speed and a turn rate, reaches them with a
-// first-order lag, and stays at its depth. See docs/how_to/add_a_vehicle.md.
+// A vehicle of your own: it takes a speed and a turn rate, reaches them with a first-order lag, and
+// stays at its depth. Its autopilot lets controllers and policies fly it. See
+// docs/how_to/add_a_vehicle.md.
 
 #include <cmath>
 #include <cstdio>
 
 #include "auv_common/config/loader.hpp"
 #include "auv_common/plugin.hpp"
+#include "auv_dynamics/autopilot/autopilot.hpp"
 #include "auv_dynamics/world/world.hpp"
 
 namespace {
@@ -26,10 +28,11 @@ class Unicycle : public Vehicle {
   Unicycle(const UnicycleOptions& options, const VehicleConfig& config)
       : lag_s_(options.lag_s),
         actuators_{{"speed", "m/s", 0.0, config.max_velocity_mps[0]},
-                   {"turn_rate", "rad/s", -config.max_rate_radps[2], config.max_rate_radps[2]}} {}
+                   {"turn_rate", "rad/s", -config.max_rate_radps[2], config.max_rate_radps[2]}},
+        actions_(VelocityActions(config)) {}
 
   const Space& actuators() const override { return actuators_; }
-  const Space& actions() const override { return none_; }
+  const Space& actions() const override { return actions_; }
   int internal_size() const override { return 1; }  // speed through the water
 
   void Step(const Pack* command, const Surroundings& around, double dt, VehicleState<Pack>* state,
@@ -55,7 +58,38 @@ class Unicycle : public Vehicle {
   }
 
   double lag_s_;
-  Space actuators_, none_;
+  Space actuators_, actions_;
+};
+
+/// Turns towards the commanded velocity, and drives with its component along the heading.
+class UnicycleAutopilot : public Autopilot {
+ public:
+  UnicycleAutopilot(const VehicleConfig& vehicle, const AutopilotConfig& config)
+      : speed_mps_(vehicle.max_velocity_mps[0]),
+        turn_radps_(vehicle.max_rate_radps[2]),
+        gain_ps_(config.course_gain_ps) {}
+
+  int state_size() const override { return 0; }
+  void Steer(const Vec3<double>& v_des_W, const Navigation<double>& nav, double, double*,
+             double* command) const override {
+    Follow(v_des_W, nav, command);
+  }
+  void Steer(const Vec3<Pack>& v_des_W, const Navigation<Pack>& nav, double, Pack*,
+             Pack* command) const override {
+    Follow(v_des_W, nav, command);
+  }
+
+ private:
+  template <class T>
+  void Follow(const Vec3<T>& v_des_W, const Navigation<T>& nav, T* command) const {
+    const Vec3<T> v_des_B = RotationOf(nav.q_WB).TransposeTimes(v_des_W);
+    const Mask<T> moves = v_des_B.x * v_des_B.x + v_des_B.y * v_des_B.y > T(1e-12);
+    const T error = Atan2(Select(moves, v_des_B.y, T(0.0)), Select(moves, v_des_B.x, T(1.0)));
+    command[0] = Clip(v_des_B.x, T(0.0), T(speed_mps_));
+    command[1] = Clip(error * T(gain_ps_), T(-turn_radps_), T(turn_radps_));
+  }
+
+  double speed_mps_, turn_radps_, gain_ps_;
 };
 
 std::unique_ptr<const Vehicle> MakeUnicycle(const UnicycleOptions& options,
@@ -63,10 +97,18 @@ std::unique_ptr<const Vehicle> MakeUnicycle(const UnicycleOptions& options,
   return std::make_unique<Unicycle>(options, config);
 }
 
+std::unique_ptr<const Autopilot> MakeAutopilot(const VehicleConfig& vehicle,
+                                               const AutopilotConfig& config) {
+  return std::make_unique<UnicycleAutopilot>(vehicle, config);
+}
+
 }  // namespace
 
 // As a shared library, which any program loads: see docs/how_to/load_a_plugin.md.
-STG_PLUGIN { Vehicles().Add("unicycle", MakeUnicycle); }
+STG_PLUGIN {
+  Vehicles().Add("unicycle", MakeUnicycle);
+  Autopilots().Add("unicycle", MakeAutopilot);
+}
 
 int main() {
   stg_plugin_register();

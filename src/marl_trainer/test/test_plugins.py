@@ -97,6 +97,31 @@ class Plugins(unittest.TestCase):
         evaluate("--plugin", library("sonar"), "--set", "sensing.sensor=sonar",
                  "--set", "mode=acoustic", "--set", "sensing.sonar.near_std_m=0.01")
 
+    def test_a_vehicle_flies_with_its_autopilot(self):
+        model = ("--plugin", library("unicycle"), "--set", "vehicle.model=unicycle")
+        usual, slow = (evaluate(*model, "--set", f"vehicle.unicycle.lag_s={lag}") for lag in (2, 20))
+        self.assertNotEqual(usual["return"], slow["return"], "the key has effect")
+        turning = evaluate(*model, "--set", "control.autopilot.course_gain_ps=0.1")
+        self.assertNotEqual(turning["return"], usual["return"], "the autopilot reads its key")
+        path = self.write(
+            "own.yaml",
+            f"base: medium.yaml\nplugins: [{library('unicycle')}]\nname: medium\n"
+            "vehicle: {model: unicycle, unicycle: {lag_s: 20}}\n",
+        )
+        by_file = evaluate("--scenario", path)
+        self.assertEqual(by_file["return"], slow["return"])
+        self.assertEqual(by_file["scenario_hash"], slow["scenario_hash"])
+
+    def test_a_reward_term_and_a_medium_access_read_their_keys(self):
+        term = ("--plugin", library("station_keeping"), "--set",
+                "reward.terms.station_keeping.weight=0.2")
+        half = evaluate(*term, "--set", "reward.terms.station_keeping.full_share=0.5")
+        self.assertNotEqual(half["return"], evaluate(*term)["return"])
+        lottery = ("--plugin", library("lottery"), "--set", "channel.access=lottery")
+        often, seldom = (evaluate(*lottery, "--set", f"channel.lottery.mean_s={mean}")
+                         for mean in (0.5, 8))
+        self.assertNotEqual(often["return"], seldom["return"])
+
     def test_an_algorithm_trains_and_what_it_wrote_flies(self):
         out = self.folder / "run"
         status, output, errors = run(
@@ -135,6 +160,12 @@ class Plugins(unittest.TestCase):
         stg.load_plugin(library("unicycle"))
         unicycle = {"vehicle.model": "unicycle", "vehicle.unicycle.lag_s": 2.0}
         self.assertIn("lag_s: 2", stg.load_scenario("medium", overrides=unicycle).to_yaml())
+        with self.assertRaisesRegex(stg.UserError, "vehicle.unicycle.lag_s"):
+            stg.load_scenario("medium", overrides={**unicycle, "vehicle.unicycle.lag_s": -1.0})
+        flights = [stg.evaluate("pursuit", "medium", episodes=1, seed=3000, overrides={
+            **unicycle, "vehicle.unicycle.lag_s": lag, "time.episode_steps": 60,
+            "time.tail_steps": 20}) for lag in (2.0, 20.0)]  # fmt: skip
+        self.assertNotEqual(flights[0]["return"], flights[1]["return"])
         with self.assertRaisesRegex(stg.UserError, "cannot open shared object file"):
             stg.load_plugin("/nonexistent/libmine.so")
 

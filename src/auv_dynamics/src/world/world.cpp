@@ -6,6 +6,8 @@
 
 #include "auv_common/config/loader.hpp"
 #include "auv_common/error.hpp"
+#include "auv_common/names.hpp"
+#include "auv_dynamics/autopilot/autopilot.hpp"
 #include "auv_dynamics/vehicle/fully_actuated.hpp"
 
 namespace stg::dynamics {
@@ -115,7 +117,10 @@ void World::Navigate() {
 
 void World::Step(const std::vector<Wrench<Pack>>& tau) {
   if (kinds_.command_size() != kWrenchSize) {
-    throw UserError("vehicle.model: these vehicles are not commanded by force and moment");
+    throw UserError(
+        "vehicle.model: these vehicles take neither force and moment, nor do they have an "
+        "autopilot; autopilots are registered for " +
+        JoinNames(Autopilots().Names()));
   }
   assert(tau.size() == vehicles_.size());
   Pack* c = commands_.data();

@@ -3,9 +3,32 @@
 #include "auv_common/config/files.hpp"
 #include "auv_common/config/loader.hpp"
 #include "auv_common/error.hpp"
+#include "auv_common/names.hpp"
+#include "auv_dynamics/autopilot/autopilot.hpp"
+#include "auv_dynamics/vehicle/vehicle_set.hpp"
 #include "stg_env/task/reward_term.hpp"
 
 namespace stg {
+namespace {
+
+/// Agents command a velocity, so an autopilot must turn it into commands to the actuators. Vehicles
+/// that take force and moment need none.
+std::optional<config::Violation> FindUnsteered(const Scenario& s) {
+  const dynamics::VehicleConfig& vehicle = s.world.vehicle;
+  const std::string& model = vehicle.model_of(0);
+  if (dynamics::Autopilots().Has(model) ||
+      dynamics::VehicleSet(vehicle, 1).command_size() == dynamics::kWrenchSize) {
+    return {};
+  }
+  return config::Violation{{vehicle.models.empty() ? "vehicle.model" : "vehicle.models"},
+                           "no autopilot is registered for '" + model +
+                               "', which does not take force and moment; set " +
+                               "vehicle.model to a vehicle with an autopilot (" +
+                               JoinNames(dynamics::Autopilots().Names()) +
+                               "), or register an autopilot '" + model + "' beside the vehicle"};
+}
+
+}  // namespace
 
 void Scenario::ValidateOrThrow() const { config::ValidateOrThrow(*this); }
 
@@ -62,6 +85,7 @@ std::optional<config::Violation> FindConflict(const Scenario& s) {
     return config::Violation{{"fleet.leave", "mode", "sea.open"},
                              "AUVs can leave and join only in open water and in the mode acoustic"};
   }
+  if (auto violation = FindUnsteered(s)) return violation;
   return FindConflict(s.judge());
 }
 
