@@ -44,6 +44,43 @@ class Refusals(unittest.TestCase):
         self.assertEqual(process.returncode, 0, output)
         self.assertEqual(output.count("no policy is shipped for a scenario named 'mine', so the controller 'pursuit_separated' decides"), 1, output)
 
+    def test_what_would_have_no_effect_ends_the_launch(self):
+        for arguments, reason in (
+                (["bag:=a.bag"], "argument bag: has no effect without record:=true"),
+                (["explore:=true", "policy:=pursuit"], "'pursuit' draws no actions at random"),
+                (["overrides:=[mode=truth]"], "so a run of nodes always has mode=acoustic")):
+            with self.subTest(arguments):
+                process, _ = launch(self.folder, "medium.launch", "table:=false", *arguments,
+                                    program=shutil.which("roslaunch"))
+                self.addCleanup(stop, process)
+                output = process.communicate(timeout=60)[0]
+                self.assertIn(reason, output)
+                self.assertIn("this node refuses its configuration, so the launch ends", output)
+
+    def test_a_scenario_with_true_states_says_that_the_run_has_none(self):
+        process, _ = launch(self.folder, "medium.launch", "table:=false", "episodes:=1",
+                            "scenario:=medium_release", "real_time_factor:=0", "deadline:=20",
+                            "policy:=pursuit", "overrides:=[time.episode_steps=40, time.tail_steps=10]")
+        self.addCleanup(stop, process)
+        output = process.communicate(timeout=60)[0]
+        self.assertEqual(process.returncode, 0, output)
+        self.assertEqual(output.count("scenario 'medium_release' has mode: truth"), 1, output)
+
+    def test_a_private_parameter_that_a_node_does_not_read_is_refused(self):
+        (self.folder / "own.launch").write_text(
+            '<launch><env name="STG_REFUSAL_ENDS_LAUNCH" value="1"/>'
+            '<param name="/markers/overview/trail_s" value="5"/>'
+            '<param name="/markers/rate_hs" value="5"/>'
+            '<node name="markers" pkg="stg_monitor" type="marker_node" output="screen"/></launch>')
+        program = self.folder / "own"
+        program.write_text(f'#!/bin/sh\nexec roslaunch -p "$2" "{self.folder}/own.launch"\n')
+        program.chmod(0o755)
+        process, _ = launch(self.folder, program=program)
+        self.addCleanup(stop, process)
+        output = process.communicate(timeout=60)[0]
+        self.assertIn("parameter rate_hs: this node does not read it, did you mean rate_hz? "
+                      "('rosparam delete /markers/rate_hs' removes it", output)
+
     def test_an_agent_that_nobody_starts_is_named_while_it_is_waited_for(self):
         process, _ = launch(self.folder, "medium.launch", "table:=false", "external:=[2]",
                             "policy:=idle", "episodes:=1")

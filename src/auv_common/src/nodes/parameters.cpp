@@ -13,14 +13,37 @@
 
 #include "auv_common/config/files.hpp"
 #include "auv_common/config/run_config.hpp"
+#include "auv_common/config/value.hpp"
 #include "auv_common/error.hpp"
+#include "auv_common/names.hpp"
 
 namespace stg::nodes {
 namespace {
 
+/// Keys of a scenario's file that a graph may replace.
+struct FileKeys {
+  RunConfig run;
+  std::string mode = "acoustic";
+};
+
+void Describe(FileKeys* k, config::Table* t) {
+  Describe(&k->run, t);
+  t->Section("");
+  t->Add("mode", config::Name(&k->mode, {"truth", "acoustic"}), config::kNone, "-", "");
+}
+
+std::optional<config::Violation> FindConflict(const FileKeys& k) { return FindConflict(k.run); }
+
+/// The private parameters that this node has asked for.
+std::set<std::string>& Asked() {
+  // PollLoop and the diagnostics read these two after the start.
+  static std::set<std::string> names{"realtime_priority", "diagnostic_period"};
+  return names;
+}
+
 /// Reads a parameter. Returns false if it is not set.
 bool Find(const std::string& name, Reach reach, XmlRpc::XmlRpcValue* value) {
-  if (ros::NodeHandle("~").getParam(name, *value)) return true;
+  if (PrivateParameter(name, value)) return true;
   return reach == Reach::kRun && ros::param::get("/" + name, *value);
 }
 
@@ -36,6 +59,38 @@ std::vector<std::string> Words(const std::string& text) {
 }
 
 }  // namespace
+
+bool PrivateParameter(const std::string& name, XmlRpc::XmlRpcValue* value) {
+  Asked().insert(name);
+  return ros::NodeHandle("~").getParam(name, *value);
+}
+
+void RequireAllParametersRead() {
+  std::vector<std::string> all;
+  if (!ros::param::getParamNames(all)) return;
+  const std::string space = ros::this_node::getName() + "/";
+  for (const std::string& path : all) {
+    if (path.compare(0, space.size(), space) != 0) continue;
+    const std::string name = path.substr(space.size());
+    // The server lists the entries of a map one by one, as NAME/KEY.
+    bool asked = false;
+    for (std::size_t end = name.find('/'); !asked; end = name.find('/', end + 1)) {
+      asked = Asked().count(name.substr(0, end)) > 0;
+      if (end == std::string::npos) break;
+    }
+    if (asked) continue;
+    const std::vector<std::string> known(Asked().begin(), Asked().end());
+    const std::string near = NearestName(name, known);
+    throw UserError("parameter " + name + ": this node does not read it" +
+                    (near.empty() ? "" : ", did you mean " + near + "?") + " ('rosparam delete " +
+                    path + "' removes it from the ROS master)");
+  }
+}
+
+void RefuseParameter(const std::string& name, const std::string& why) {
+  XmlRpc::XmlRpcValue ignored;
+  if (PrivateParameter(name, &ignored)) throw UserError("parameter " + name + ": " + why);
+}
 
 std::vector<std::string> TextsParameter(const std::string& name, Reach reach) {
   XmlRpc::XmlRpcValue value;
@@ -131,8 +186,9 @@ config::Source ScenarioSource() {
   if (const auto other = given("mode="); other == overrides.end()) {
     overrides.push_back(mode);
   } else if (*other != mode) {
-    throw UserError("parameter overrides: '" + *other + "': a run of nodes has always the " +
-                    "mode acoustic");
+    throw UserError("parameter overrides: " + config::Quoted(*other) +
+                    ": nodes know only what they measure and receive, so a run of nodes always has "
+                    "mode=acoustic; 'evaluate' flies with mode=truth");
   }
   for (const std::string& library : TextsParameter("plugins", Reach::kRun)) {
     overrides.push_back("plugins=[\"" + library + "\"]");
@@ -149,13 +205,20 @@ void RequireAgents(int agents) {
   }
 }
 
-void WarnOfOverriddenAgents(int agents) {
+void WarnOfReplacedKeys(int agents) {
   const std::string name = TextParameter("scenario", "medium", Reach::kRun);
   const config::Source file = config::NamedSource(config::ScenarioFolder(), name);
-  const int own = config::Load<RunConfig>(file, config::Scope::kOwnSections).agents;
-  if (own == agents) return;
-  ROS_WARN("%d AUVs, from the launch argument 'agents'; scenario '%s' itself has %d", agents,
-           name.c_str(), own);
+  const FileKeys own = config::Load<FileKeys>(file, config::Scope::kOwnSections);
+  if (own.run.agents != agents) {
+    ROS_WARN("%d AUVs, from the launch argument 'agents'; scenario '%s' itself has %d", agents,
+             name.c_str(), own.run.agents);
+  }
+  if (own.mode != "acoustic") {
+    ROS_WARN(
+        "scenario '%s' has mode: %s, but nodes know only what they measure and receive: this "
+        "run has mode: acoustic",
+        name.c_str(), own.mode.c_str());
+  }
 }
 
 }  // namespace stg::nodes

@@ -51,7 +51,10 @@ WorldNode::WorldNode()
       told_s_(WallSeconds()),
       fresh_(static_cast<std::size_t>(scenario_.run.agents)),
       health_("world", "simulation", [this](auto& status) { Report(status); }) {
-  WarnOfOverriddenAgents(scenario_.run.agents);
+  // The launch file writes here which of its arguments would have no effect.
+  const std::string refusal = TextParameter("refusal", "");
+  if (!refusal.empty()) throw UserError(refusal);
+  WarnOfReplacedKeys(scenario_.run.agents);
   // The world does not use it, but no other node can check the whole list of a launch.
   RequireIndices("external", scenario_.run.agents);
   const std::string awaited = TextParameter("wait_for_node", "");

@@ -45,6 +45,12 @@ TrainerNode::TrainerNode()
       agent_policies_(static_cast<std::size_t>(scenario_.run.agents)),
       began_(ros::WallTime::now()),
       health_("trainer", "trainer", [this](auto& status) { Report(status); }) {
+  // The defaults of a launch file depend on it.
+  const bool open = scenario_.world.sea.open;
+  if (FlagParameter("open_water", open) != open) {
+    throw UserError("parameter open_water: must be " + std::string(open ? "true" : "false") +
+                    " for the scenario '" + scenario_.run.name + "'");
+  }
   learner_ = MakeLearner(scenario_, bags_.empty());
 }
 

@@ -1,10 +1,7 @@
 #include "trainer_parameters.hpp"
 
-#include <ros/node_handle.h>
-
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "auv_common/config/value.hpp"
 #include "auv_common/error.hpp"
@@ -44,7 +41,6 @@ std::string TextOf(const std::string& name, XmlRpc::XmlRpcValue value) {
 
 std::vector<std::string> LoadTrainParameters(const config::Table& options,
                                              const std::vector<std::string>& except) {
-  const ros::NodeHandle node("~");
   std::vector<std::string> given;
   for (const config::Field& option : options.fields()) {
     std::string name = option.path;
@@ -52,7 +48,7 @@ std::vector<std::string> LoadTrainParameters(const config::Table& options,
     // Only private parameters, because `seed`, for example, also exists for the world.
     XmlRpc::XmlRpcValue value;
     const bool skipped = std::find(except.begin(), except.end(), option.path) != except.end();
-    if (skipped || !node.getParam(name, value)) continue;
+    if (skipped || !PrivateParameter(name, &value)) continue;
     if (const auto message = config::ParseText(option, TextOf(name, value))) {
       throw UserError("parameter " + name + ": " + *message);
     }
@@ -68,13 +64,6 @@ std::vector<std::string> LoadTrainParameters(const config::Table& options,
   return given;
 }
 
-std::vector<std::string> LoadBagNames() {
-  const ros::NodeHandle node("~");
-  std::vector<std::string> names;
-  if (!node.hasParam("bags") || node.getParam("bags", names)) return names;
-  std::istringstream in(TextParameter("bags", ""));
-  for (std::string name; in >> name;) names.push_back(name);
-  return names;
-}
+std::vector<std::string> LoadBagNames() { return TextsParameter("bags"); }
 
 }  // namespace stg::nodes

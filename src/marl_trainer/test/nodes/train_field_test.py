@@ -84,6 +84,18 @@ class TrainField(unittest.TestCase):
         text = self.refused("_network:=pool", "_algorithm:=masac")
         self.assertIn("learns by mappo", text)
 
+    def test_3b_what_would_have_no_effect_is_refused(self):
+        text = self.refused(f"_network:={self.network}", "_critic_lr:=0.001")
+        self.assertIn(f"parameter critic_lr: belongs to the network layers, but the network is {self.network}",
+                      text)
+        for name in ("critic_updates", "log_std"):
+            text = self.refused("_network:=layers", f"_{name}:=1")
+            self.assertIn(f"parameter {name}: belongs to the networks pool and graph", text)
+        text = self.refused("_open_water:=false")
+        self.assertIn("parameter open_water: must be true for the scenario", text)
+        text = self.refused(f"_network:={self.network}", "_epoch:=3")
+        self.assertIn("parameter epoch: this node does not read it, did you mean epochs?", text)
+
     def test_4_a_policy_without_its_deviations_is_refused(self):
         broken = self.out / "broken.onnx"
         data = (self.policies / "field.onnx").read_bytes()

@@ -27,4 +27,6 @@ ControllerRegistry& Controllers() {
 
 std::string DefaultController() { return "pursuit_separated"; }
 
+std::string WaitingController() { return "idle"; }
+
 }  // namespace stg::agent

@@ -36,7 +36,7 @@ AgentNode::AgentNode()
       period_(model_.run.decision_period()),
       patience_s_(NumberParameter("patience", 0.1, 0.0, 3600.0)),
       report_delay_s_(NumberParameter("report_delay", 0.0, 0.0, 0.05)),
-      explore_(FlagParameter("explore", false)),
+      explore_(ExploreParameter(decider_, id_)),
       commands_velocity_(model_.control.interface == dynamics::ActionInterface::kVelocity3),
       commands_wrench_(!commands_velocity_ ||
                        (AutopilotOnBoardParameter() && !dynamics::Helm::Steers(model_.vehicle))),

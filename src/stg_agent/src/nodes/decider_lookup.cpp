@@ -11,6 +11,7 @@
 #include "auv_common/config/loader.hpp"
 #include "auv_common/error.hpp"
 #include "auv_common/names.hpp"
+#include "auv_common/nodes/parameters.hpp"
 
 namespace stg::nodes {
 
@@ -74,6 +75,16 @@ agent::Decider DeciderFor(const std::string& name, const agent::AgentModel& mode
     }
   }
   return decider;
+}
+
+bool ExploreParameter(const agent::Decider& decider, int id) {
+  const bool explore = FlagParameter("explore", false);
+  const std::string& name = decider.IdOf(id);
+  if (explore && decider.FileOf(id).empty() && name != agent::WaitingController()) {
+    throw UserError("parameter explore: the controller '" + name +
+                    "' draws no actions at random; choose a policy file, or leave out explore");
+  }
+  return explore;
 }
 
 }  // namespace stg::nodes

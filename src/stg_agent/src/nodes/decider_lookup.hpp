@@ -12,4 +12,8 @@ namespace stg::nodes {
 /// Throws UserError when the file is not a policy for this scenario.
 agent::Decider DeciderFor(const std::string& name, const agent::AgentModel& model, int id);
 
+/// The parameter `explore`: the agent draws its actions at random. Throws UserError if the decider
+/// cannot do this and does not wait for a policy either.
+bool ExploreParameter(const agent::Decider& decider, int id);
+
 }  // namespace stg::nodes

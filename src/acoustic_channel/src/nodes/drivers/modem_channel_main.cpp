@@ -11,7 +11,7 @@ std::unique_ptr<acoustics::Channel> OpenModems(const acoustics::NetworkConfig& s
   modems.protocol = TextParameter("protocol", "s2c");
   modems.rssi_offset_db = NumberParameter("rssi_offset_db", -190.0, -1e3, 1e3);
   modems.baud = static_cast<int>(NumberParameter("baud", 19200.0, 1.0, 1e7));
-  ros::NodeHandle("~").getParam("ports", modems.ports);
+  modems.ports = TextsParameter("ports");
   return std::make_unique<acoustics::ModemChannel>(scenario.channel, scenario.run, modems);
 }
 

@@ -1,11 +1,11 @@
 #include "vehicle_list.hpp"
 
 #include <ros/names.h>
-#include <ros/node_handle.h>
 
 #include <sstream>
 
 #include "auv_common/error.hpp"
+#include "auv_common/nodes/parameters.hpp"
 
 namespace stg::nodes {
 namespace {
@@ -78,9 +78,8 @@ void RefuseTwins(const std::vector<FleetVehicle>& vehicles) {
 }  // namespace
 
 std::vector<FleetVehicle> VehicleListParameter() {
-  const ros::NodeHandle node("~");
   XmlRpcValue value;
-  node.getParam("vehicles", value);
+  PrivateParameter("vehicles", &value);
   std::vector<FleetVehicle> vehicles;
   if (value.getType() == XmlRpcValue::TypeString) {
     std::istringstream words{std::string(value)};

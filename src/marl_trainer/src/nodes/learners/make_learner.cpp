@@ -33,6 +33,9 @@ std::unique_ptr<OnlineLearner> MakeLayersLearner(const Scenario& scenario,
     throw UserError("parameter network: layers, but the start policy '" + start +
                     "' is a network over entities");
   }
+  for (const char* name : {"critic_updates", "log_std", "learning_rate", "last_learning_rate"}) {
+    RefuseParameter(name, "belongs to the networks pool and graph, but the network is layers");
+  }
   learn::RecordedTrainer::Options options;
   options.out = TextParameter("out", "");
   options.policy = start;
@@ -61,7 +64,12 @@ std::unique_ptr<OnlineLearner> MakeEntityLearner(const Scenario& scenario,
   config::Table table;
   config.Describe(&table);
   learn::RecordedSwarmTrainer::Options options;
+  const double lr = NumberParameter("lr", 0.0, 1e-8, 1.0);
+  if (lr > 0.0) config.learning_rate = config.last_learning_rate = lr;
   const std::vector<std::string> given = LoadTrainParameters(table, {"network"});
+  RefuseParameter("critic_lr", "belongs to the network layers, but the network is " +
+                                   agent::EntityNetworkName(config.network) +
+                                   ", whose critic learns with lr");
   const bool starts = !start.empty();
   if (starts && (config.network != network_of_start || config.action != action_of_start)) {
     throw UserError("start policy '" + start + "': has the network '" +

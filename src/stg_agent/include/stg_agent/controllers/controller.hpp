@@ -85,6 +85,8 @@ using ControllerRegistry = Registry<Controller>;
 ControllerRegistry& Controllers();
 /// Name of the controller that is used where neither policy nor controller is named.
 std::string DefaultController();
+/// Name of the controller of agents that wait for the first policy of a trainer.
+std::string WaitingController();
 
 /// The controller of a name alone or with constants that differ from the tuned ones, as in
 /// "pursuit_separated:gain=2,cap=0.5"; null when no controller has that name. Throws UserError for

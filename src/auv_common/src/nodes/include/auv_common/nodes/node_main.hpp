@@ -109,6 +109,7 @@ int RunNode(int argc, char** argv, const std::string& name, NodeClock clock = No
   if (clock == NodeClock::kMessages && SimulatedTimeParameter()) ros::Time::setNow(ros::Time());
   try {
     Node node;
+    RequireAllParametersRead();
     ReturnFreeMemory();
     node.Spin();
   } catch (const UserError& error) {

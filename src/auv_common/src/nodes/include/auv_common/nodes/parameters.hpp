@@ -34,9 +34,19 @@ Config LoadScenarioParameters(config::Scope scope = config::Scope::kOwnSections)
   return config;
 }
 
-/// Warns if `agents` replaces another number in the scenario's file. Only one node of the graph
-/// calls it.
-void WarnOfOverriddenAgents(int agents);
+/// Warns if `agents` replaces another number in the scenario's file, or if the graph replaces its
+/// information mode. Only one node of the graph calls it.
+void WarnOfReplacedKeys(int agents);
+
+/// Reads a private parameter of any type. Returns false if it is not set.
+bool PrivateParameter(const std::string& name, XmlRpc::XmlRpcValue* value);
+
+/// Throws UserError with the reason if the private parameter is set.
+void RefuseParameter(const std::string& name, const std::string& why);
+
+/// Throws UserError if a private parameter is set that this node has not asked for. Called at the
+/// end of the start.
+void RequireAllParametersRead();
 
 /// A checked parameter. Throws UserError if it has another type, is not finite, or is outside [lo,
 /// hi].
