@@ -45,7 +45,7 @@ misses='time, \([0-9]*\) with a deadline miss'
 
 run four 120 medium.launch real_time_factor:=0 episodes:=6
 finished
-run twenty 180 swarm.launch agents:=20 real_time_factor:=0 episodes:=1 \
+run twenty 180 medium.launch scenario:=swarm20 agents:=20 autopilot:=onboard real_time_factor:=0 episodes:=1 \
   "overrides:=[time.episode_steps=300]"
 finished
 live() {
