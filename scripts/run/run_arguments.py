@@ -16,10 +16,22 @@ from run_checks import Refusal
 
 MOST_AGENTS = 255
 OTHER = re.compile(r"^\$\(arg (\w+)\)$")
+NUMBER = re.compile(r"^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$", re.IGNORECASE)
 SEEDS = ("seed", "train_seed")
 ANY_SEED = -1  # this default means the scenario's seed
 # Numbers that come from the scenario if they are not given.
 NUMBERS_OR_NOTHING = ("latitude", "longitude")
+# Numbers that the program chooses if they are `auto`.
+NUMBERS_OR_AUTO = ("lr", "critic_lr", "epochs", "critic_updates", "log_std")
+# An argument without effect unless another argument of the launch file has this value.
+NEEDS = {
+    "bag": {"record": "true"},
+    "port": {"view": "web"},
+    "view": {"gui": "true", "rviz": "true"},
+    "config": {"emulate": "true"},
+    "packet_log": {"emulate": "true"},
+}
+WINDOWS = ("overview", "follow", "both")  # views in rviz; a launch file with a port has `web`, too
 
 
 def declared(file):
@@ -46,6 +58,9 @@ def _what_it_takes(name, text, default):
     given, usual = _as_roslaunch_reads(text), _as_roslaunch_reads(default)
     if name in NUMBERS_OR_NOTHING:
         fits, takes = not text or _is_number(given), "a number, such as 54.5, or nothing"
+    elif name in NUMBERS_OR_AUTO and usual == "auto":
+        fits = text == "auto" or re.match(NUMBER, text)
+        takes = "a number, such as 0.001, or auto"
     elif isinstance(usual, bool):
         fits, takes = isinstance(given, bool), "true or false"
     elif name in SEEDS and usual != ANY_SEED:
@@ -61,8 +76,36 @@ def _what_it_takes(name, text, default):
     return "" if fits else takes
 
 
+def _check_effect(given, defaults):
+    """Refuses arguments that have no effect beside the others, and two names for the scenario.
+
+    @param given     {name: text} of the command line
+    @param defaults  {name: text or None} of the launch file
+    @throws Refusal  names the argument, and the other one which it needs
+    """
+    view, views = given.get("view", "overview"), WINDOWS + ("web",) * ("port" in defaults)
+    if "view" in defaults and view not in views:
+        raise Refusal(f"view: '{view}' is none of {', '.join(views)}")
+    for name, needed in NEEDS.items():
+        if given.get(name) in (None, defaults.get(name)) or (name == "view" and view == "web"):
+            continue
+        for other, value in needed.items():
+            now = given.get(other, defaults.get(other))
+            if other in defaults and str(now).lower() != value:
+                raise Refusal(
+                    f"{name}:={given[name]} has no effect, because {other} is {now}; add"
+                    f" {other}:={value}, or leave out {name}"
+                )
+    task, scenario = given.get("task"), given.get("scenario")
+    if task and scenario and task != scenario:
+        raise Refusal(
+            f"task:={task} and scenario:={scenario} are two scenarios; leave out one of them"
+        )
+
+
 def check(words):
-    """Refuses arguments that the launch file does not have, and values of another kind.
+    """Refuses arguments that the launch file does not have, values of another kind, and arguments
+    without effect.
 
     @param words  a roslaunch command line: [OPTIONS] PACKAGE FILE NAME:=TEXT ...
     @throws Refusal  names the argument and its kind
@@ -72,9 +115,8 @@ def check(words):
     if not found:
         return
     defaults = declared(found[0])
-    for name, text in (word.split(":=", 1) for word in words if ":=" in word):
-        if name.startswith("_"):
-            continue
+    given = dict(word.split(":=", 1) for word in words if ":=" in word and word[0] != "_")
+    for name, text in given.items():
         if name not in defaults:
             near = difflib.get_close_matches(name, defaults, 1)
             hint = f"did you mean '{near[0]}'?" if near else f"it has {', '.join(defaults)}"
@@ -89,3 +131,4 @@ def check(words):
         takes = _what_it_takes(name, text, defaults[other.group(1)] if other else default)
         if takes:
             raise Refusal(f"{name} takes {takes}, not '{text}'")
+    _check_effect(given, defaults)

@@ -80,8 +80,14 @@ class Help(unittest.TestCase):
                 self.assertIn(hint, output.splitlines()[0])
                 self.assertEqual(len(output.splitlines()), 2, output)
 
+    def test_two_scenarios_are_refused(self):
+        for name, other in (("hunt", "field"), ("hard", "medium"), ("swarm20", "mine.yaml")):
+            status, output = run(ROOT / "stg", "run", name, f"scenario:={other}")
+            self.assertEqual(status, 2, output)
+            self.assertIn(f"run: {name} and scenario:={other} are two scenarios", output)
+
     def test_help_of_a_run_names_the_controllers(self):
-        for scenario in ("medium", "hard", "swarm", "field"):
+        for scenario in ("medium", "hard", "swarm20", "field"):
             output = run(ROOT / "stg", "run", scenario, "--help")[1]
             for controller in ("pursuit,", "pursuit_separated", "encircle", "idle"):
                 self.assertIn(controller, output, scenario)

@@ -2,6 +2,7 @@
 
 import os
 import pathlib
+import re
 import subprocess
 import tempfile
 import unittest
@@ -10,6 +11,8 @@ import xml.etree.ElementTree as ElementTree
 import roslaunch.config
 import roslib.packages
 import rospkg
+from roslaunch.substitution_args import resolve_args
+from stg_common.loading import load_program
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 LAUNCH = pathlib.Path(rospkg.RosPack().get_path("stg_bringup")) / "launch"
@@ -122,29 +125,92 @@ class Graph(unittest.TestCase):
         self.assertLessEqual({f"/target_{k}/odom" for k in range(16)}, set(recorder.args.split()))
 
 
-SCENARIO_AGENTS = ROOT / "scripts" / "run" / "scenario_agents.py"
+    def test_arguments_without_effect_reach_the_world_as_a_reason(self):
+        def refusal(file, *arguments):
+            return load(LAUNCH / f"{file}.launch", list(arguments)).params["/world/refusal"].value
+
+        for file, argument, why in (
+                ("medium", "bag:=a.bag", "bag: has no effect without record:=true"),
+                ("medium", "port:=9999", "port: has no effect without view:=web"),
+                ("medium", "view:=bogus", "view: must be web, overview, follow or both"),
+                ("sea", "config:=a.yaml", "no effect with emulate:=false"),
+                ("sea", "packet_log:=a.csv", "no effect with emulate:=false"),
+                ("field", "scenario:=field", "name two scenarios, so leave out one")):
+            others = {"sea": ["emulate:=false"], "field": ["task:=hunt"]}.get(file, [])
+            self.assertIn(why, refusal(file, argument, *others))
+            self.assertEqual(refusal(file, *others), "", file)
+        for arguments in (["record:=true", "bag:=a.bag"], ["view:=web", "port:=9999"], ["view:=both"]):
+            self.assertEqual(refusal("medium", *arguments), "", arguments)
+        self.assertEqual(refusal("sea", "config:=/a.yaml", "packet_log:=a.csv"), "")
+        self.assertEqual(refusal("field", "task:=hunt", "scenario:=hunt"), "")
+
+    def test_a_recording_without_a_name_has_one_of_its_own(self):
+        config = load(LAUNCH / "medium.launch", ["record:=true"])
+        (recorder,) = (node for node in config.nodes if node.name == "recorder")
+        self.assertRegex(recorder.args, f"--output-name='{os.environ['PWD']}/stg_run_[^/]+[.]bag'")
 
 
-class ScenarioAgents(unittest.TestCase):
-    """The number of AUVs of a scenario is known before anything is launched."""
+class Documentation(unittest.TestCase):
+    """What the texts of arguments list is what there is."""
 
-    def agents(self, scenario):
+    def listed(self, file, name):
+        """Returns the words of the text of an argument."""
+        root = ElementTree.parse(LAUNCH / file).getroot()
+        (text,) = (arg.get("doc") for arg in root.findall("arg") if arg.get("name") == name)
+        return set(re.findall(r"\w+", text))
+
+    def test_policies_are_the_registered_controllers(self):
+        registry = (ROOT / "src/stg_agent/src/controllers/registry.cpp").read_text()
+        names = set(re.findall(r'\{"(\w+)", Make', registry))
+        self.assertGreater(len(names), 10)
+        for file in ("medium.launch", "field.launch", "include/graph.launch"):
+            self.assertEqual(names - self.listed(file, "policy"), set(), file)
+
+    def test_conditions_of_the_field_are_the_files(self):
+        folder = ROOT / "src/stg_bringup/scenarios/conditions"
+        names = {file.stem for part in ("field", "many8", "deep") for file in (folder / part).glob("*.yaml")}
+        self.assertGreater(len(names), 15)
+        self.assertEqual(names - self.listed("field.launch", "condition"), set())
+
+
+SCENARIO_KEY = ROOT / "scripts" / "run" / "scenario_key.py"
+scenario_key = load_program(SCENARIO_KEY)
+run_arguments = load_program(SCENARIO_KEY.parent / "run_arguments.py")
+
+
+class ScenarioKeys(unittest.TestCase):
+    """The number of AUVs of a scenario, and its water, are known before anything is launched."""
+
+    def key(self, scenario, key="agents"):
         """Returns what the script prints."""
-        return subprocess.run([SCENARIO_AGENTS, scenario], stdout=subprocess.PIPE,
+        return subprocess.run([SCENARIO_KEY, scenario, key], stdout=subprocess.PIPE,
                               universal_newlines=True, check=True).stdout.strip()
 
     def test_own_number_counts_else_that_of_the_base(self):
-        self.assertEqual(self.agents("swarm20"), "20")
+        self.assertEqual(self.key("swarm20"), "20")
         shipped = ROOT / "src" / "stg_bringup" / "scenarios"
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
             (folder / "seven.yaml").write_text(f"base: {shipped}/medium.yaml\nagents: 7\n")
             (folder / "heir.yaml").write_text("base: seven.yaml\nname: heir\n")
             (folder / "circle.yaml").write_text("base: circle.yaml\n")
-            self.assertEqual(self.agents(folder / "seven.yaml"), "7")
-            self.assertEqual(self.agents(folder / "heir.yaml"), "7")
+            self.assertEqual(self.key(folder / "seven.yaml"), "7")
+            self.assertEqual(self.key(folder / "heir.yaml"), "7")
             for wrong in ("circle", "missing"):
-                self.assertEqual(self.agents(folder / f"{wrong}.yaml"), "", wrong)
+                self.assertEqual(self.key(folder / f"{wrong}.yaml"), "", wrong)
+
+    def test_a_scenario_of_a_user_may_be_in_open_water(self):
+        with tempfile.TemporaryDirectory() as name:
+            mine = pathlib.Path(name) / "mine.yaml"
+            mine.write_text("base: field8.yaml\nname: mine\nsea: {bottom_m: 300}\n")
+            self.assertEqual(self.key(mine, "sea.open"), "true")
+        self.assertEqual(self.key("hard", "sea.open"), "")
+
+    def test_shipped_names_tell_the_water(self):
+        default = run_arguments.declared(LAUNCH / "train_online.launch")["open_water"]
+        for file in (ROOT / "src/stg_bringup/scenarios").glob("*.yaml"):
+            given = resolve_args(default, {"arg": {"scenario": file.stem}})
+            self.assertEqual(given, str(bool(scenario_key.value_of(file.stem, "sea.open"))), file.stem)
 
     def test_what_is_no_yaml_is_refused_in_one_line(self):
         with tempfile.TemporaryDirectory() as name:
@@ -158,11 +224,11 @@ class ScenarioAgents(unittest.TestCase):
 
     def refused(self, scenario, what):
         """Expects that the script ends in one line that says `what`."""
-        run = subprocess.run([SCENARIO_AGENTS, scenario], stdout=subprocess.PIPE,
+        run = subprocess.run([SCENARIO_KEY, scenario, "agents"], stdout=subprocess.PIPE,
                              stderr=subprocess.PIPE, universal_newlines=True, timeout=60,
                              check=False)  # fmt: skip
         self.assertEqual((run.returncode, run.stdout), (2, ""))
-        self.assertRegex(run.stderr, rf"^scenario_agents: [^\n]*{what}[^\n]*\n$")
+        self.assertRegex(run.stderr, rf"^scenario_key: [^\n]*{what}[^\n]*\n$")
 
 
 if __name__ == "__main__":

@@ -45,10 +45,47 @@ class Arguments(unittest.TestCase):
         self.assertIn("or nothing", self.refusal("latitude:=north", file="field.launch"))
         self.assertIn("is blank", self.refusal("terrain:= ", file="field.launch"))
         self.assertIn("true or false", self.refusal("stay:=2", "bag:=a", file="replay.launch"))
+        self.assertIn("lr takes a number, such as 0.001, or auto, not 'fast'",
+                      self.refusal("lr:=fast", file="train_online.launch"))
+
+    def test_numbers_may_replace_auto(self):
+        file = PACKAGES / "stg_bringup" / "launch" / "train_online.launch"
+        automatic = {name for name, default in run_arguments.declared(file).items()
+                     if default == "auto" and name != "network"}
+        self.assertEqual(automatic, set(run_arguments.NUMBERS_OR_AUTO))
+        for name in automatic:
+            for text in ("3", "0.001", "1e-4", "-0.5", "auto"):
+                run_arguments.check(["stg_bringup", file.name, f"{name}:={text}"])
+
+    def test_arguments_without_effect_are_refused(self):
+        for file, words, why in (
+                ("medium", "bag:=a.bag", "bag:=a.bag has no effect, because record is false; add"
+                 " record:=true, or leave out bag"),
+                ("medium", "bag:=a.bag record:=false", "because record is false"),
+                ("medium", "port:=9999", "because view is overview; add view:=web"),
+                ("field", "port:=9999 view:=follow gui:=true", "because view is follow"),
+                ("medium", "view:=follow", "because gui is false; add gui:=true"),
+                ("medium", "view:=bogus", "view: 'bogus' is none of overview, follow, both, web"),
+                ("replay", "bag:=a view:=web", "view: 'web' is none of overview, follow, both"),
+                ("replay", "bag:=a view:=both gui:=false", "because gui is false"),
+                ("view", "view:=both rviz:=false", "because rviz is false"),
+                ("sea", "emulate:=false config:=a.yaml", "because emulate is false"),
+                ("sea", "emulate:=false packet_log:=a.csv", "because emulate is false"),
+                ("field", "task:=hunt scenario:=field", "task:=hunt and scenario:=field are two")):
+            self.assertIn(why, self.refusal(*words.split(), file=f"{file}.launch"), words)
+
+    def test_arguments_with_effect_pass(self):
+        for file, words in (("medium", "record:=True bag:=a.bag"), ("medium", "view:=web port:=9999"),
+                            ("medium", "view:=web gui:=false"), ("medium", "view:=both gui:=true"),
+                            ("medium", "view:=overview port:=8300 gui:=false"),
+                            ("replay", "bag:=a.bag view:=both"), ("view", "view:=both"),
+                            ("sea", "config:=a.yaml packet_log:=a.csv"),
+                            ("field", "task:=hunt scenario:=hunt"), ("field", "scenario:=hunt")):
+            run_arguments.check(["stg_bringup", f"{file}.launch", *words.split()])
 
     def test_values_of_the_right_kind_pass(self):
         run_arguments.check(["stg_bringup", "medium.launch", "real_time_factor:=2", "deadline:=.5",
-                             "gui:=True", "episodes:=3", "bag:=./7", "policy:=pursuit:cap=0.5",
+                             "gui:=True", "episodes:=3", "record:=true", "bag:=./7", "policy:=pursuit:cap=0.5",
                              "overrides:=[agents=4]", "external:=[2]", "summary_file:="])
         run_arguments.check(["stg_bringup", "field.launch", "latitude:=", "longitude:=-10.5"])
         run_arguments.check(["acoustic_channel", "channel.launch", "seed:=-1", "step:=0.5"])
