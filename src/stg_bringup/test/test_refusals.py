@@ -53,7 +53,7 @@ class Refusals(unittest.TestCase):
                 process, _ = launch(self.folder, "medium.launch", "table:=false", *arguments,
                                     program=shutil.which("roslaunch"))
                 self.addCleanup(stop, process)
-                output = process.communicate(timeout=60)[0]
+                output = process.communicate(timeout=90)[0]
                 self.assertIn(reason, output)
                 self.assertIn("this node refuses its configuration, so the launch ends", output)
 

@@ -25,6 +25,17 @@ bool IsRoslaunch(pid_t process) {
   return false;
 }
 
+/// The parent of a process; 0 if the kernel does not show it.
+pid_t ParentOf(pid_t process) {
+  std::ifstream in("/proc/" + std::to_string(process) + "/status");
+  for (std::string word; in >> word;) {
+    if (word != "PPid:") continue;
+    pid_t parent = 0;
+    return in >> parent ? parent : 0;
+  }
+  return 0;
+}
+
 /// First line of a file of a process's main thread; empty if the kernel does not show it.
 std::string OfMainThread(pid_t process, const char* file) {
   const std::string id = std::to_string(process);
@@ -67,11 +78,15 @@ void AwaitLaunched(pid_t roslaunch) {
 void EndLaunchOfRefused() {
   const char* wanted = std::getenv("STG_REFUSAL_ENDS_LAUNCH");
   const pid_t parent = getppid();
-  if (wanted == nullptr || std::string(wanted) != "1" || !IsRoslaunch(parent)) return;
-  AwaitLaunched(parent);
+  if (wanted == nullptr || std::string(wanted) != "1") return;
+  // A required node is the child of ends_launch. It must wait, too: a roslaunch whose required node
+  // dies while it still starts others may hang.
+  const pid_t roslaunch = IsRoslaunch(parent) ? parent : ParentOf(parent);
+  if (!IsRoslaunch(roslaunch)) return;
+  AwaitLaunched(roslaunch);
   if (StoppedBySignal() || getppid() != parent) return;  // the launch ends already
   ROS_FATAL("this node refuses its configuration, so the launch ends");
-  kill(parent, SIGINT);
+  kill(roslaunch, SIGINT);
 }
 
 }  // namespace stg::nodes
