@@ -22,7 +22,8 @@ void Describe(ChannelConfig* c, config::Table* t) {
   for (const char* other : {"extended", "physical"}) {
     by_range.erase(std::find(by_range.begin(), by_range.end(), other));
   }
-  t->Own("channel.range_m", {"propagation model", by_range, "channel.model", model});
+  // Files state it also for other models, because a command may choose `range` or the mode truth.
+  t->Own("channel.range_m", {"propagation model", by_range, "channel.model", model, {}, true});
   const auto of_model = [&](const char* name) {
     return config::Owner{"propagation model", {name}, "channel.model", model};
   };

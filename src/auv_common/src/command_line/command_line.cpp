@@ -141,7 +141,7 @@ void CommandLine::RefuseUnread() const {
     const std::string name = "--" + field->path;
     const config::Owner* owner = field->Unchosen();
     if (owner == nullptr || app_->count(name) == 0) continue;
-    throw CLI::ValidationError(name, owner->WhyUnread("this command", "--" + owner->key));
+    throw CLI::ValidationError(name, owner->WhyUnread("this command", "--"));
   }
 }
 

@@ -26,10 +26,12 @@ bool Owner::IsChosen() const {
          choice.end();
 }
 
-std::string Owner::WhyUnread(const std::string& chooser, const std::string& by) const {
+std::string Owner::WhyUnread(const std::string& chooser, const std::string& prefix) const {
   if (!refusal.empty()) return refusal;
+  std::string keys = prefix + key;
+  for (const std::string& other : other_keys) keys += ", " + prefix + other;
   return "belongs to the " + kind + " " + QuotedNames(names, "or") + "; " + chooser + " chose " +
-         QuotedNames(chosen(), "and") + " (" + by + ")";
+         QuotedNames(chosen(), "and") + " (" + keys + ")";
 }
 
 const Owner* Field::Unchosen() const {

@@ -243,25 +243,21 @@ void Loader::RefuseUnread() const {
     const Owner* const owner = field.Unchosen();
     if (set == origin_.end() || owner == nullptr) continue;
     if (owner->files_state_all && !set->second.is_override) continue;
-    const std::string& key = LastKeyThatChooses(*owner);
-    const auto choice = origin_.find(key);
-    if (choice != origin_.end() && set->second.layer < choice->second.layer) continue;
-    throw UserError(set->second.where + field.path + ": " +
-                    owner->WhyUnread("this configuration", key));
+    if (set->second.layer < LayerOfChoice(*owner)) continue;
+    throw UserError(set->second.where + field.path + ": " + owner->WhyUnread("this configuration"));
   }
 }
 
-/// The key of the owner that was set last; the first one among those of the same layer.
-const std::string& Loader::LastKeyThatChooses(const Owner& owner) const {
-  const auto layer = [this](const std::string& key) {
+/// The highest layer that sets a key of the choice.
+int Loader::LayerOfChoice(const Owner& owner) const {
+  int layer = -1;
+  const auto take = [&](const std::string& key) {
     const auto found = origin_.find(key);
-    return found == origin_.end() ? -1 : found->second.layer;
+    if (found != origin_.end()) layer = std::max(layer, found->second.layer);
   };
-  const std::string* last = &owner.key;
-  for (const std::string& key : owner.other_keys) {
-    if (layer(key) > layer(*last)) last = &key;
-  }
-  return *last;
+  take(owner.key);
+  for (const std::string& key : owner.other_keys) take(key);
+  return layer;
 }
 
 std::string Loader::WhereOf(const std::string& key) const {

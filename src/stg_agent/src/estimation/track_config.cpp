@@ -65,8 +65,13 @@ void Describe(TrackConfig* c, config::Table* t) {
   std::vector<std::string> others = TargetFilters().Names();
   others.erase(std::find(others.begin(), others.end(), "measurements"));
   for (const char* key : {"process_accel_std_mps2", "initial_speed_std_mps", "gate_sigma"}) {
-    t->Own(std::string("track.") + key, {"target filter", others, "track.filter",
-                                         [c] { return std::vector<std::string>{c->filter}; }});
+    // Files state them also for other filters, because a command may choose `kalman`.
+    t->Own(std::string("track.") + key, {"target filter",
+                                         others,
+                                         "track.filter",
+                                         [c] { return std::vector<std::string>{c->filter}; },
+                                         {},
+                                         true});
   }
   for (const char* key : {"shear_std_mps", "shear_memory_s"}) {
     t->Own(std::string("track.measurements.") + key,

@@ -8,6 +8,7 @@
 
 #include "acoustic_channel/modem/modem_profile.hpp"
 #include "acoustic_channel/water/sound_speed.hpp"
+#include "auv_common/config/loader.hpp"
 #include "auv_common/error.hpp"
 #include "env/env_fixture.hpp"
 #include "stg_agent/stations/station_channel.hpp"
@@ -25,11 +26,11 @@ constexpr TimeNs kSecond = 1'000'000'000;
 class PingTest : public ::testing::Test {
  protected:
   void Make(double target_m, const std::vector<std::string>& more = {}) {
-    std::vector<std::string> keys{
-        "agents=2", "sensing.range.range_std_m=1e-9", "sensing.range.range_std_share=0.0",
-        "sensing.range.probability_at_range=1.0", "sensing.detection_probability=1.0"};
-    keys.insert(keys.end(), more.begin(), more.end());
-    scenario_ = Shipped("field", "ping_ranging", keys);
+    scenario_ =
+        Shipped("field", "ping_ranging",
+                {"agents=2", "sensing.range.range_std_m=1e-9", "sensing.range.range_std_share=0.0",
+                 "sensing.range.probability_at_range=1.0", "sensing.detection_probability=1.0"});
+    config::Override(&scenario_, more);
     channel_ = agent::MakeStationChannel(scenario_.model(), scenario_.channel,
                                          scenario_.world.sensing, {});
     ASSERT_EQ(channel_->nodes(), 2);

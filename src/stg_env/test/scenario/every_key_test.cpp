@@ -164,66 +164,6 @@ const std::vector<Exception> kExceptions = {
     {"reward.terms.obstacle", "The sea has no obstacles; files on top of field.yaml add them."},
 };
 
-/// Keys of the world without effect that the scenarios still accept.
-const std::vector<std::string> kWorldKeys = {
-    "vehicle.max_rate_radps",
-    "vehicle.clip_velocity",
-    "vehicle.max_tau",
-    "vehicle.radius_m",
-    "vehicle.integrator",
-    "vehicle.substeps",
-    "vehicle.fully_actuated.inertia_kgm2",
-    "vehicle.fully_actuated.r_BG_m",
-    "vehicle.fully_actuated.r_BB_m",
-    "vehicle.fully_actuated.weight_n",
-    "vehicle.fully_actuated.buoyancy_n",
-    "vehicle.fully_actuated.reversed_coriolis",
-    "vehicle.fully_actuated.restoring",
-    "vehicle.kinematic.min_speed_mps",
-    "current.layer_depth_m",
-    "current.tide_period_s",
-    "current.tide_phase_rad",
-    "disturbance.force_std_n",
-    "disturbance.moment_std_nm",
-    "disturbance.correlation_time_s",
-    "contact.stiffness",
-    "contact.softness_m",
-    "workspace.restitution",
-    "workspace.tangential",
-    "workspace.body_velocity",
-    "workspace.body_rate",
-    "sea.open",
-    "sea.latitude_deg",
-    "sea.longitude_deg",
-    "believed.sea.bottom_m",
-    "believed.sea.cylinders",
-    "target.max_speed_mps",
-    "target.max_turn_rate_radps",
-    "reset.curriculum",
-    "reset.start_half_extent_m",
-    "reset.stages.easy",
-    "reset.stages.hard",
-    "navigation.dead_reckoning.gps_std_m",
-    "navigation.dead_reckoning.current_std_mps",
-    "navigation.dead_reckoning.fixes",
-    "believed.navigation.dead_reckoning.dvl_noise_mps",
-    "believed.navigation.dead_reckoning.gyro_walk_deg_per_sqrt_h",
-    "sensing.dropout_duration_s",
-    "sensing.period_s",
-    "control.velocity_gain",
-    "control.attitude_gain",
-    "control.rate_gain",
-    "control.heading",
-    "control.heading_gain",
-    "control.autopilot.speed_integral_ps",
-    "control.autopilot.turn_gain_ps",
-    "control.autopilot.turn_integral_ps2",
-    "control.autopilot.max_pitch_rad",
-    "control.autopilot.climb_integral_ps",
-    "control.autopilot.pitch_frequency_radps",
-    "control.autopilot.pitch_integral_ps3",
-};
-
 bool Inside(const std::string& path, const std::string& key) {
   return path == key || path.rfind(key + ".", 0) == 0;
 }
@@ -232,9 +172,7 @@ bool Excepted(const std::string& path) {
   const std::string believed = "believed.";
   const std::string of = path.rfind(believed, 0) == 0 ? path.substr(believed.size()) : path;
   return std::any_of(kExceptions.begin(), kExceptions.end(),
-                     [&](const Exception& e) { return Inside(path, e.key) || of == e.key; }) ||
-         std::any_of(kWorldKeys.begin(), kWorldKeys.end(),
-                     [&](const std::string& key) { return Inside(path, key) || of == key; });
+                     [&](const Exception& e) { return Inside(path, e.key) || of == e.key; });
 }
 
 /// The keys that a scenario accepts, although they change nothing in any of these flights of it.
@@ -318,7 +256,6 @@ TEST(EveryKey, OfDeepMatters) {
 TEST(EveryKey, OfTheExceptionsExists) {
   std::vector<std::string> keys;
   for (const Exception& e : kExceptions) keys.push_back(e.key);
-  keys.insert(keys.end(), kWorldKeys.begin(), kWorldKeys.end());
   Scenario scenario;
   const auto fields = ScenarioFields(&scenario);
   for (const std::string& key : keys) {

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "auv_common/config/loader.hpp"
 #include "scenario/scenario_input.hpp"
 #include "stg_env/scenario/scenario.hpp"
@@ -14,8 +16,15 @@ Scenario Load(const std::string& name, const Keys& overrides) {
   return LoadNamedScenario(STG_SCENARIO_FOLDER, name, "nominal", overrides);
 }
 
+/// Both lists of overrides; `b` replaces overrides of the same keys in `a`.
 Keys Joined(Keys a, const Keys& b) {
-  a.insert(a.end(), b.begin(), b.end());
+  for (const std::string& text : b) {
+    const std::string key = text.substr(0, text.find('=') + 1);
+    a.erase(std::remove_if(a.begin(), a.end(),
+                           [&](const std::string& other) { return other.rfind(key, 0) == 0; }),
+            a.end());
+    a.push_back(text);
+  }
   return a;
 }
 
@@ -32,7 +41,7 @@ const std::vector<Case> kCases{
     {"field",
      {},
      "workspace.restitution=0.9",
-     "world 'walls'; this configuration chose 'open water' (sea.open)",
+     "world 'walls'; this configuration chose 'open water' (sea.open",
      {"sea.open=false"}},
     {"field", {}, "workspace.tangential=0.9", "world 'walls'", {"sea.open=false"}},
     {"field", {}, "workspace.body_velocity=0.9", "world 'walls'", {"sea.open=false"}},
@@ -40,7 +49,7 @@ const std::vector<Case> kCases{
     {"field",
      {},
      "vehicle.max_tau=[1,1,1,1,1,1]",
-     "vehicle 'fully_actuated'; this configuration chose 'torpedo' (vehicle.model)",
+     "vehicle 'fully_actuated'; this configuration chose 'torpedo' (vehicle.model, vehicle.models",
      {"vehicle.model=fully_actuated"}},
     {"field",
      {},
@@ -89,12 +98,12 @@ const std::vector<Case> kCases{
     {"medium",
      {"vehicle.models=[fully_actuated]"},
      "vehicle.model=torpedo",
-     "fleet 'of one model'; this configuration chose 'of models in turn' (vehicle.models)",
+     "fleet 'of one model'; this configuration chose 'of models in turn' (vehicle.models",
      {"vehicle.models=[]"}},
     {"medium",
      {"control.interface=tau6"},
      "control.max_delta=0.1",
-     "action interface 'velocity3'; this configuration chose 'tau6' (control.interface)",
+     "action interface 'velocity3'; this configuration chose 'tau6' (control.interface",
      {"control.interface=velocity3"}},
     {"medium",
      {"control.interface=tau6"},
@@ -104,7 +113,7 @@ const std::vector<Case> kCases{
     {"medium",
      {},
      "control.heading_gain=1",
-     "heading 'along_velocity'; this configuration chose 'free' (control.heading)",
+     "heading 'along_velocity'; this configuration chose 'free' (control.heading",
      {"control.heading=along_velocity"}},
     {"medium_release",
      {},
@@ -114,7 +123,7 @@ const std::vector<Case> kCases{
     {"medium",
      {},
      "reset.stages.hard.target_speed_mps=[0.01, 0.02]",
-     "reset stage 'hard'; this configuration chose 'medium' (reset.stage)",
+     "reset stage 'hard'; this configuration chose 'medium' (reset.stage",
      {"reset.stage=hard"}},
     {"medium",
      {},
@@ -124,22 +133,22 @@ const std::vector<Case> kCases{
     {"many8",
      {},
      "reset.stages.medium.auv_distance_m=[200, 300]",
-     "start 'around' or 'point'; this configuration chose 'area' (reset.deploy)",
+     "start 'around' or 'point'; this configuration chose 'area' (reset.deploy",
      {"reset.deploy=point"}},
     {"medium",
      {},
      "target.max_turn_rate_radps=0.1",
-     "or 'evasive'; this configuration chose 'constant_velocity' (target.motion)",
+     "or 'evasive'; this configuration chose 'constant_velocity' (target.motion",
      {"target.motion=evasive"}},
     {"field",
      {},
      "contact.softness_m=0.5",
-     "contact 'with a force'; this configuration chose 'without a force' (contact.stiffness)",
+     "contact 'with a force'; this configuration chose 'without a force' (contact.stiffness",
      {"contact.stiffness=1"}},
     {"medium",
      {},
      "disturbance.correlation_time_s=5",
-     "this configuration chose 'none' (disturbance.force_std_n)",
+     "this configuration chose 'none' (disturbance.force_std_n",
      {"disturbance.moment_std_nm=1"}},
     {"medium",
      {},
@@ -159,7 +168,7 @@ const std::vector<Case> kCases{
     {"deep",
      {"current.random_tide_mps=0"},
      "current.tide_period_s=100",
-     "chose 'without a tide' (current.random_tide_mps)",
+     "chose 'without a tide' (current.",
      {"current.random_tide_mps=0.1"}},
     {"deep",
      {},
@@ -194,7 +203,9 @@ TEST_F(ScenarioInput, AFleetOfSeveralModelsIgnoresKeysThatABaseStatesForItsOneMo
   const Scenario fleet = LoadScenario(base, {}, {"vehicle.models=[torpedo, kinematic]"});
   EXPECT_EQ(fleet.world.vehicle.model_of(1), "kinematic");
   const Keys mass{"vehicle.fully_actuated.mass_kg=30", "vehicle.models=[torpedo]"};
-  EXPECT_NE(ErrorOf([&] { LoadScenario(base, {}, mass); }).find("chose 'torpedo' (vehicle.models)"),
+  EXPECT_NE(ErrorOf([&] {
+              LoadScenario(base, {}, mass);
+            }).find("chose 'torpedo' (vehicle.model, vehicle.models)"),
             std::string::npos);
 }
 

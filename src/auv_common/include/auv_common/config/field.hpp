@@ -143,9 +143,9 @@ struct Owner {
   std::string refusal = {};  ///< replaces the sentence that names the owner and the choice
 
   bool IsChosen() const;
-  /// For messages: "belongs to the KIND 'a' or 'b'; CHOOSER chose 'c' (BY)", or `refusal`.
-  /// @param chooser e.g. "this configuration" @param by the key or option that chose
-  std::string WhyUnread(const std::string& chooser, const std::string& by) const;
+  /// For messages: "belongs to the KIND 'a' or 'b'; CHOOSER chose 'c' (KEYS)", or `refusal`.
+  /// @param chooser e.g. "this configuration" @param prefix of the keys, e.g. "--"
+  std::string WhyUnread(const std::string& chooser, const std::string& prefix = "") const;
 };
 
 /// One key of a file and the member of the struct that it fills.

@@ -79,7 +79,7 @@ class Loader {
   std::string Nearest(const std::string& path) const;
   std::string Unknown(const std::string& path) const;
   std::string WhereOf(const std::string& key) const;
-  const std::string& LastKeyThatChooses(const Owner& owner) const;
+  int LayerOfChoice(const Owner& owner) const;
 
   const Table& table_;
   const Scope scope_;
