@@ -31,10 +31,12 @@ class SwarmRecording : public ::testing::Test {
   }
 
   static Scenario Short(const std::string& name = "field", int agents = 3) {
-    return LoadNamedScenario(
-        config::ScenarioFolder(), name, "nominal",
-        {"agents=" + std::to_string(agents), "time.episode_steps=" + std::to_string(kFlightSteps),
-         "time.tail_steps=20", "reset.stages.medium.auv_distance_m=[80, 150]"});
+    std::vector<std::string> overrides{"agents=" + std::to_string(agents),
+                                       "time.episode_steps=" + std::to_string(kFlightSteps),
+                                       "time.tail_steps=20"};
+    // AUVs of many8 start anywhere in an area.
+    if (name != "many8") overrides.push_back("reset.stages.medium.auv_distance_m=[80, 150]");
+    return LoadNamedScenario(config::ScenarioFolder(), name, "nominal", overrides);
   }
   std::unique_ptr<RecordedSwarmTrainer> Trainer(const std::string& name,
                                                 const SwarmStart& start = {}) {
