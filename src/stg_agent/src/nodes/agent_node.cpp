@@ -38,8 +38,9 @@ AgentNode::AgentNode()
       report_delay_s_(NumberParameter("report_delay", 0.0, 0.0, 0.05)),
       explore_(ExploreParameter(decider_, id_)),
       commands_velocity_(model_.control.interface == dynamics::ActionInterface::kVelocity3),
-      commands_wrench_(!commands_velocity_ ||
-                       (AutopilotOnBoardParameter() && !dynamics::Helm::Steers(model_.vehicle))),
+      // The parameter comes first, so that it is read whatever the agent commands.
+      commands_wrench_((AutopilotOnBoardParameter() && !dynamics::Helm::Steers(model_.vehicle)) ||
+                       !commands_velocity_),
       pending_(id_, model_.target.count, model_.sensing.labelled),
       tracker_(period_, model_.run.time.episode_steps),
       barrier_(kParties, period_),
