@@ -35,6 +35,23 @@ dynamics::Cue CueOf(const auv_msgs::SensorFrame& m, int target) {
   return cue;
 }
 
+std::vector<dynamics::Cue> OtherCues(const auv_msgs::SensorFrame& m, const dynamics::Cue& cue,
+                                     int own, int targets) {
+  std::vector<dynamics::Cue> others;
+  const auto finite = [](const auto& p) { return FiniteVector(p); };
+  if (cue.target < 0 || m.cues.size() != static_cast<std::size_t>(targets) ||
+      !std::all_of(m.cues.begin(), m.cues.end(), finite)) {
+    return others;
+  }
+  for (int k = 0; k < targets; ++k) {
+    if (k == own) continue;
+    others.push_back(cue);
+    others.back().target = k;
+    others.back().p_WT = VectorOf(m.cues[static_cast<std::size_t>(k)]);
+  }
+  return others;
+}
+
 void SetTaskState(const agent::Agent& agent, const agent::AgentOutput& output,
                   auv_msgs::TaskState* m) {
   const agent::TaskView task = agent.task();

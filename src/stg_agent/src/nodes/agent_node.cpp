@@ -199,17 +199,10 @@ void AgentNode::ForgetRun() {
 }
 
 void AgentNode::StartEpisode(const auv_msgs::SensorFrame& frame) {
-  dynamics::Cue cue = CueOf(frame, model_.target.of(id_));
+  const dynamics::Cue cue = CueOf(frame, model_.target.of(id_));
   agent_.Reset(frame.episode, cue);
-  const auto finite = [](const auto& p) { return FiniteVector(p); };
-  if (cue.target >= 0 && frame.cues.size() == static_cast<std::size_t>(model_.target.count) &&
-      std::all_of(frame.cues.begin(), frame.cues.end(), finite)) {
-    for (int k = 0; k < model_.target.count; ++k) {
-      if (k == agent_.target()) continue;
-      cue.target = k;
-      cue.p_WT = VectorOf(frame.cues[static_cast<std::size_t>(k)]);
-      agent_.AddCue(cue);
-    }
+  for (const dynamics::Cue& other : OtherCues(frame, cue, agent_.target(), model_.target.count)) {
+    agent_.AddCue(other);
   }
   turns_.Reset(frame.seed, 0);
   episode_ = frame.episode;
