@@ -138,6 +138,11 @@ class Load(unittest.TestCase):
         self.assertEqual((policy.observation_size, policy.action_size), (74, 3))
         self.assertEqual(stg.evaluate(path, episodes=4)["lost_rate"], 0.0)
 
+    def test_evaluate_refuses_keys_that_only_a_training_reads(self):
+        for overrides in ({"critic.far_scale_m": 2.0}, {"reset": {"curriculum": True}}):
+            with self.assertRaisesRegex(stg.UserError, "evaluate does not train"):
+                stg.evaluate("pursuit", overrides=overrides, episodes=1)
+
     def test_what_is_no_policy_is_refused(self):
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder, "a.onnx")

@@ -104,7 +104,7 @@ void RefuseKeysOfTraining(const std::vector<std::string>& overrides, const std::
   for (const std::string& text : overrides) {
     for (const char* keys : {"critic.", "reset.curriculum"}) {
       if (text.rfind(keys, 0) != 0) continue;
-      throw UserError("--set '" + text + "': only a training reads this key, but " + program +
+      throw UserError("'" + text + "': only a training reads this key, but " + program +
                       " does not train");
     }
   }

@@ -168,6 +168,8 @@ void BindPolicy(py::module_& module) {
   module.def("evaluate", &Evaluate, py::arg("policy"), py::arg("scenario"),
              py::arg("episodes") = 30, py::arg("seed") = 3000, py::arg("workers") = 1,
              py::arg("privileged") = false, "The paper's metrics of a policy file or controller.");
+  module.def("refuse_keys_of_training", &RefuseKeysOfTraining, py::arg("overrides"),
+             py::arg("program"), "Raises UserError for an override that only a training reads.");
   module.def(
       "controllers", [] { return agent::Controllers().Names(); },
       "Names of the built-in controllers.");
