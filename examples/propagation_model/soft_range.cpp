@@ -84,7 +84,8 @@ int main() {
   network.run.agents = 2;
   config::Override(&network, {"channel.model=soft_range", "channel.soft_range.steepness=6"});
   network.channel.range_m = 100.0;
-  network.channel.transmit_period_s = network.run.decision_dt_s();  // a packet in every decision
+  network.channel.periodic.transmit_period_s =
+      network.run.decision_dt_s();  // a packet in every decision
 
   // Half of the packets arrive at the range itself. An agent's estimate of the link agrees.
   const double near = ShareAt(60.0, network), at = ShareAt(100.0, network);

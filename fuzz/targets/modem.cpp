@@ -44,8 +44,8 @@ bool Talk(const std::string& bytes, const char* profile,
   acoustics::ChannelConfig config;
   config.model = "physical";
   config.access = "aloha";
-  config.modem.queue = acoustics::QueuePolicy::kFifo;
-  config.modem.profile = profile;
+  config.physical.modem.queue = acoustics::QueuePolicy::kFifo;
+  config.physical.modem.profile = profile;
   Listeners hosts;
   ModemWater water(config, run, &hosts);
   for (int i = 0; i < run.agents; ++i) {

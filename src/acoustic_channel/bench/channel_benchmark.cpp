@@ -58,7 +58,7 @@ void Modems(benchmark::State& bench, const char* access) {
   s.run.agents = agents;
   s.channel.model = "physical";
   s.channel.access = access;
-  s.channel.modem.packet_bytes = 32;
+  s.channel.physical.modem.packet_bytes = 32;
   s.channel.slots.length_s = 1.25;
   s.channel.contention.rest_s = agents;
   const auto channel = MakeChannel(s.channel, s.run);

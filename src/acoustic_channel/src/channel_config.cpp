@@ -27,16 +27,16 @@ void Describe(ChannelConfig* c, config::Table* t) {
   const auto of_model = [&](const char* name) {
     return config::Owner{"propagation model", {name}, "channel.model", model};
   };
-  t->Thing(of_model("range"), "channel.range", static_cast<RangeConfig*>(c), describe);
-  t->Thing(of_model("extended"), "channel.extended", static_cast<ExtendedConfig*>(c), describe);
-  t->Thing(of_model("physical"), "channel.physical", static_cast<PhysicalConfig*>(c), describe);
+  t->Thing(of_model("range"), "channel.range", &c->range, describe);
+  t->Thing(of_model("extended"), "channel.extended", &c->extended, describe);
+  t->Thing(of_model("physical"), "channel.physical", &c->physical, describe);
   PropagationModels().Describe("channel", "channel.model", model, &c->models, t);
 
   const auto access = [c] { return std::vector<std::string>{c->access}; };
   const auto of_access = [&](std::vector<std::string> names) {
     return config::Owner{"medium access", std::move(names), "channel.access", access};
   };
-  t->Thing(of_access({"periodic"}), "channel.periodic", static_cast<PeriodicConfig*>(c), describe);
+  t->Thing(of_access({"periodic"}), "channel.periodic", &c->periodic, describe);
   t->Thing(of_access({"tdma", "slotted_aloha"}), "channel.slots", &c->slots, describe);
   t->Thing(of_access({"slotted_aloha"}), "channel.slots", &c->slots, DescribeDraw);
   t->Thing(of_access({"aloha", "csma"}), "channel.contention", &c->contention, describe);

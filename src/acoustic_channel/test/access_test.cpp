@@ -15,7 +15,7 @@ namespace {
 NetworkConfig Slotted(int nodes, double transmit_period_s, int decision_steps = 1) {
   NetworkConfig s = LosslessNetwork(nodes);
   s.run.time.decision_steps = decision_steps;
-  s.channel.transmit_period_s = transmit_period_s;
+  s.channel.periodic.transmit_period_s = transmit_period_s;
   return s;
 }
 
@@ -71,11 +71,11 @@ TEST(Periodic, WhoAsksLateOrOftenGetsTheSameSlots) {
 
 TEST(Periodic, RefusesAPeriodShorterThanADecision) {
   NetworkConfig s;
-  s.channel.transmit_period_s = 0.05;
+  s.channel.periodic.transmit_period_s = 0.05;
   const auto violation = config::FindViolation(s);
   ASSERT_TRUE(violation);
   EXPECT_EQ(violation->keys.front(), "channel.periodic.transmit_period_s");
-  s.channel.transmit_period_s = 0.1;
+  s.channel.periodic.transmit_period_s = 0.1;
   EXPECT_FALSE(config::FindViolation(s));
 }
 
@@ -198,10 +198,10 @@ TEST(MediumAccess, OneFromOutsideIsARegisteredName) {
   }
   NetworkConfig s = LosslessNetwork(3);
   s.channel.access = "late";
-  s.channel.loss_distance_m = 1e6;
-  s.channel.sound_speed_mps = 10.0;
+  s.channel.extended.loss_distance_m = 1e6;
+  s.channel.extended.sound_speed_mps = 10.0;
   EXPECT_FALSE(config::FindViolation(s));
-  s.channel.transmit_period_s = 0.01;
+  s.channel.periodic.transmit_period_s = 0.01;
   EXPECT_FALSE(config::FindViolation(s)) << "a key of `periodic` binds nobody else";
   const auto channel = MakeChannel(s.channel, s.run);
   channel->Reset(1, 0);

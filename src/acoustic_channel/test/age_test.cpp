@@ -71,10 +71,10 @@ void CheckPeriodic(double p, double delay_s, int frame_steps) {
   NetworkConfig s;
   s.run.agents = 2;
   s.channel.model = "extended";
-  s.channel.transmit_period_s = 0.1;
-  s.channel.loss_probability = p;
-  s.channel.loss_distance_m = 1e12;
-  s.channel.sound_speed_mps = 1.0 / delay_s;  // the AUVs are 1 m apart
+  s.channel.periodic.transmit_period_s = 0.1;
+  s.channel.extended.loss_probability = p;
+  s.channel.extended.loss_distance_m = 1e12;
+  s.channel.extended.sound_speed_mps = 1.0 / delay_s;  // the AUVs are 1 m apart
   const auto channel = MakeChannel(s.channel, s.run);
   channel->Reset(17, 3);
   const std::vector<Vec3<double>> p_W{{0, 0, 0}, {0.6, 0.8, 0}}, at_rest(2);

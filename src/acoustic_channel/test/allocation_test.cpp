@@ -104,13 +104,13 @@ TEST(Allocation, PhysicalAllocatesNothingAfterWarmUp) {
       s.run.agents = 6;
       s.channel.model = "physical";
       s.channel.access = access;
-      s.channel.modem.profile = "micromodem_psk_r5";
-      if (fifo) s.channel.modem.queue = QueuePolicy::kFifo;
-      s.channel.transmit_period_s = 5.0;
+      s.channel.physical.modem.profile = "micromodem_psk_r5";
+      if (fifo) s.channel.physical.modem.queue = QueuePolicy::kFifo;
+      s.channel.periodic.transmit_period_s = 5.0;
       s.channel.slots.length_s = 0.8;
       s.channel.slots.send_probability = 0.3;
       s.channel.contention.rest_s = 5.0;
-      s.channel.noise.burst_every_s = 3.0;
+      s.channel.physical.noise.burst_every_s = 3.0;
       const auto channel = MakeChannel(s.channel, s.run);
       Traffic traffic(channel.get(), true);
       for (std::uint32_t episode = 0; episode < 16; ++episode) traffic.Fly(episode);

@@ -14,10 +14,10 @@ inline NetworkConfig LosslessNetwork(int nodes) {
   NetworkConfig s;
   s.run.agents = nodes;
   s.channel.model = "extended";
-  s.channel.transmit_period_s = 0.1;
-  s.channel.max_range_m = 3.5;
-  s.channel.loss_probability = 0.0;
-  s.channel.loss_distance_m = 1e12;
+  s.channel.periodic.transmit_period_s = 0.1;
+  s.channel.extended.max_range_m = 3.5;
+  s.channel.extended.loss_probability = 0.0;
+  s.channel.extended.loss_distance_m = 1e12;
   return s;
 }
 

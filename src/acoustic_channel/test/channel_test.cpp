@@ -16,8 +16,8 @@ namespace {
 
 NetworkConfig ExtendedScenario(int agents) {
   NetworkConfig s = LosslessNetwork(agents);
-  s.channel.loss_probability = 0.1;
-  s.channel.loss_distance_m = 2.0;
+  s.channel.extended.loss_probability = 0.1;
+  s.channel.extended.loss_distance_m = 2.0;
   return s;
 }
 
@@ -77,7 +77,7 @@ TEST(RangeChannel, DeliversAtOnceWithoutLossExactlyInsideTheRange) {
   NetworkConfig s;
   s.run.agents = 3;
   s.channel.model = "range";
-  s.channel.transmit_period_s = 0.1;
+  s.channel.periodic.transmit_period_s = 0.1;
   s.channel.range_m = 0.5;
   const auto channel = MakeChannel(s.channel, s.run);
   channel->Reset(1, 0);
@@ -99,7 +99,7 @@ TEST(RangeChannel, DeliversAtOnceWithoutLossExactlyInsideTheRange) {
 
 TEST(ExtendedChannel, ArrivalIsTransmissionPlusDistanceOverSoundSpeed) {
   NetworkConfig s = LosslessNetwork(2);
-  s.channel.sound_speed_mps = 1500.0;
+  s.channel.extended.sound_speed_mps = 1500.0;
   const auto channel = MakeChannel(s.channel, s.run);
   for (const double d : {0.0, 0.0015, 0.75, 1.5, 3.0, 3.5}) {
     channel->Reset(1, 0);
@@ -115,7 +115,7 @@ TEST(ExtendedChannel, ArrivalIsTransmissionPlusDistanceOverSoundSpeed) {
 
 TEST(ExtendedChannel, PositionsAtTransmissionSetTheDelay) {
   NetworkConfig s = LosslessNetwork(2);
-  s.channel.sound_speed_mps = 2.0;
+  s.channel.extended.sound_speed_mps = 2.0;
   const auto channel = MakeChannel(s.channel, s.run);
   channel->Reset(1, 0);
   StepAtRest(channel.get(), 0, 0, {{0, 0, 0}, {1, 0, 0}}, {From(0, 0)});
@@ -132,8 +132,8 @@ TEST(ExtendedChannel, PositionsAtTransmissionSetTheDelay) {
 
 TEST(ExtendedChannel, ReceptionAndLinkCarryTheValuesOfEq6) {
   NetworkConfig s = LosslessNetwork(2);
-  s.channel.loss_distance_m = 2.0;
-  s.channel.sound_speed_mps = 10.0;
+  s.channel.extended.loss_distance_m = 2.0;
+  s.channel.extended.sound_speed_mps = 10.0;
   const auto channel = MakeChannel(s.channel, s.run);
   std::vector<Reception> got;
   Transmission packet = From(0, 3 * kDt);
@@ -188,7 +188,7 @@ TEST(ExtendedChannel, EmpiricalLossRateIsTheLossProbability) {
       got.clear();
       channel->Deliver(1, (k + 1) * kDt, &got);
     }
-    const double p = LossProbability(d, s.channel);
+    const double p = LossProbability(d, s.channel.extended);
     const LinkStatistics link = channel->Link(0, 1, n * kDt);
     EXPECT_EQ(link.delivered + link.dropped, static_cast<std::uint64_t>(n));
     EXPECT_EQ(link.last_drop, DropReason::kLoss);
@@ -198,7 +198,7 @@ TEST(ExtendedChannel, EmpiricalLossRateIsTheLossProbability) {
 
 TEST(ExtendedChannel, LossesOfDifferentLinksAndStepsAreUncorrelated) {
   NetworkConfig s = LosslessNetwork(3);
-  s.channel.loss_probability = 0.5;
+  s.channel.extended.loss_probability = 0.5;
   const std::vector<Record> got = Play(s, 3, 0, 20000, {true, true, false}, 0);
   // In each step, of the links 0-1, 0-2, 1-0: +1 is received, -1 is lost.
   std::vector<std::vector<double>> x(3, std::vector<double>(20000, -1.0));
@@ -253,7 +253,7 @@ TEST(ExtendedChannel, WhatArrivesFartherAlsoArrivesNearer) {
 
 TEST(ExtendedChannel, ReceptionsComeOldestFirstAndTiesBySource) {
   NetworkConfig s = LosslessNetwork(9);
-  s.channel.sound_speed_mps = 1.0;
+  s.channel.extended.sound_speed_mps = 1.0;
   const auto channel = MakeChannel(s.channel, s.run);
   channel->Reset(1, 0);
   // Sources 1 to 8 around receiver 0, two at each of four distances, the farthest first.
@@ -278,7 +278,7 @@ TEST(ExtendedChannel, ReceptionsComeOldestFirstAndTiesBySource) {
 
 TEST(ExtendedChannel, ResetForgetsPacketsInFlightAndStatistics) {
   NetworkConfig s = ExtendedScenario(4);
-  s.channel.sound_speed_mps = 3.0;  // the packets of the last steps are still under way
+  s.channel.extended.sound_speed_mps = 3.0;  // the packets of the last steps are still under way
   const auto used = MakeChannel(s.channel, s.run);
   Play(s, 9, 0, 50, std::vector<bool>(4, true), 0, used.get());
   ASSERT_GT(used->totals().delivered, 0u);

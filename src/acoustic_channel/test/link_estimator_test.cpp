@@ -17,7 +17,7 @@ TEST(LinkEstimator, OfRangeIsEquation5WhateverTheAge) {
   ChannelConfig c;
   c.model = "range";
   c.range_m = 0.5;
-  c.estimate_freshness_s = 3.0;
+  c.range.freshness_s = 3.0;
   const auto links = MakeLinkEstimator(c, 2);
   for (const double age : {0.0, 1.0, 100.0}) {
     EXPECT_EQ(links->Quality(0.0, age), 1.0);
@@ -31,10 +31,10 @@ TEST(LinkEstimator, OfRangeIsEquation5WhateverTheAge) {
 TEST(LinkEstimator, OfExtendedIsEquation6) {
   ChannelConfig c;
   c.model = "extended";
-  c.attenuation_per_m = 0.5;
-  c.loss_probability = 0.1;
-  c.loss_distance_m = 2.0;
-  c.freshness_s = 2.0;
+  c.extended.attenuation_per_m = 0.5;
+  c.extended.loss_probability = 0.1;
+  c.extended.loss_distance_m = 2.0;
+  c.extended.freshness_s = 2.0;
   const auto links = MakeLinkEstimator(c, 2);
   for (const double d : {0.0, 0.3, 1.0, 3.0}) {
     for (const double age : {0.0, 0.4, 5.0}) {
@@ -63,7 +63,7 @@ TEST(LinkEstimator, PacksAndScalarsAgreeBitForBit) {
 TEST(LinkEstimator, OfPhysicalLearnsFromGapsAndLevels) {
   ChannelConfig c;
   c.model = "physical";
-  c.modem.freshness_s = 20.0;
+  c.physical.modem.freshness_s = 20.0;
   const auto links = MakeLinkEstimator(c, 3);
   const std::uint8_t bytes[32] = {};
   const auto hear = [&](int lane, std::uint32_t sequence, double sinr_db) {
@@ -139,7 +139,7 @@ TEST(PropagationModel, OneFromOutsideIsARegisteredName) {
   }
   NetworkConfig s = LosslessNetwork(2);
   s.channel.model = "coin";
-  s.channel.loss_distance_m = 1e6;  // the AUVs are in range, and this has no effect
+  s.channel.extended.loss_distance_m = 1e6;  // the AUVs are in range, and this has no effect
   EXPECT_FALSE(config::FindViolation(s));
   EXPECT_EQ(MakeLinkEstimator(s.channel, s.run.agents)->Quality(3.0, 0.0), 0.25);
   const auto channel = MakeChannel(s.channel, s.run);

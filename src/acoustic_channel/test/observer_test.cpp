@@ -13,12 +13,12 @@ NetworkConfig Swarm(const std::string& model) {
   NetworkConfig s;
   s.run.agents = 4;
   s.channel.model = model;
-  s.channel.loss_probability = 0.3;
+  s.channel.extended.loss_probability = 0.3;
   s.channel.range_m = 2.5;
-  s.channel.max_range_m = 2.5;
+  s.channel.extended.max_range_m = 2.5;
   if (model == "physical") {
     s.channel.access = "aloha";
-    s.channel.modem.profile = "evologics_s2c";
+    s.channel.physical.modem.profile = "evologics_s2c";
     s.channel.contention.rest_s = 1.0;
   }
   return s;
@@ -100,9 +100,9 @@ TEST(Observer, ChangesNothing) {
 TEST(ChannelPresence, AnAbsentNodeNeitherSendsNorHearsInAnyModel) {
   for (const char* model : {"range", "extended", "physical"}) {
     NetworkConfig s = Swarm(model);
-    s.channel.loss_probability = 0.0;
-    s.channel.loss_distance_m = 1e9;
-    s.channel.transmit_period_s = 0.1;
+    s.channel.extended.loss_probability = 0.0;
+    s.channel.extended.loss_distance_m = 1e9;
+    s.channel.periodic.transmit_period_s = 0.1;
     s.channel.contention.rest_s = 0.0;
     const auto channel = MakeChannel(s.channel, s.run);
     Log log;

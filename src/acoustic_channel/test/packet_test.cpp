@@ -56,7 +56,7 @@ TEST(Payload, BytesOfAnySizeUpToAFrameArriveUnchanged) {
 
 TEST(Payload, IsKeptWhilePacketsAreUnderWayAndAfterDeliveryUntilTheNextStep) {
   NetworkConfig s = LosslessNetwork(3);
-  s.channel.sound_speed_mps = 1.0;  // a packet takes three and four steps to the receivers
+  s.channel.extended.sound_speed_mps = 1.0;  // a packet takes three and four steps to the receivers
   const auto channel = MakeChannel(s.channel, s.run);
   channel->Reset(1, 0);
   std::vector<Bytes> sent;
@@ -123,7 +123,7 @@ TEST(Destination, AnAddressedPacketReachesThatNodeOnly) {
 TEST(Destination, DoesNotChangeWhetherAPacketArrives) {
   // A link has the same losses, whether the packet is also for other nodes or not.
   NetworkConfig s = LosslessNetwork(3);
-  s.channel.loss_probability = 0.4;
+  s.channel.extended.loss_probability = 0.4;
   const auto channel = MakeChannel(s.channel, s.run);
   const auto arrivals = [&](int destination) {
     std::vector<std::uint32_t> arrived;
@@ -227,8 +227,8 @@ TEST(Doppler, NonFiniteVelocitiesAreRefused) {
 
 TEST(Draws, AreKeyedBySeedEpisodeStepAndLink) {
   NetworkConfig s = LosslessNetwork(3);
-  s.channel.loss_probability = 0.3;
-  s.channel.loss_distance_m = 0.8;
+  s.channel.extended.loss_probability = 0.3;
+  s.channel.extended.loss_distance_m = 0.8;
   const auto channel = MakeChannel(s.channel, s.run);
   channel->Reset(77, 5);
   int lost = 0;
@@ -242,7 +242,7 @@ TEST(Draws, AreKeyedBySeedEpisodeStepAndLink) {
         const double d =
             Norm(kTriangle[static_cast<std::size_t>(j)] - kTriangle[static_cast<std::size_t>(i)]);
         Random random(77, Stream::kChannel, 5, k, static_cast<std::uint32_t>(3 * i + j));
-        const bool arrives = random.Uniform() >= LossProbability(d, s.channel);
+        const bool arrives = random.Uniform() >= LossProbability(d, s.channel.extended);
         const bool arrived = std::any_of(got.begin(), got.end(), [&](const Reception& r) {
           return r.source == i && r.receiver == j;
         });

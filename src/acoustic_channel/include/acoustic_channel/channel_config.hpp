@@ -16,9 +16,14 @@ namespace stg::acoustics {
 
 /// The section `channel`: the names of its parts, and their keys, which are described beside their
 /// code.
-struct ChannelConfig : RangeConfig, PeriodicConfig, ExtendedConfig, PhysicalConfig {
+struct ChannelConfig {
   std::string model = "extended";   ///< of PropagationModels()
   std::string access = "periodic";  ///< of MediumAccesses()
+  double range_m = 0.45;            ///< R_c of Eq. 5
+  RangeConfig range;
+  ExtendedConfig extended;
+  PhysicalConfig physical;
+  PeriodicConfig periodic;
   SlotsConfig slots;
   ContentionConfig contention;
   config::OptionsByName models = {},

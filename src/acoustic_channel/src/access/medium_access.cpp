@@ -41,7 +41,7 @@ double SlotOfKeys(const ChannelConfig& c) {
 }
 
 double RoundOfKeys(const ChannelConfig& c, int nodes) {
-  return c.access == "periodic" ? c.transmit_period_s : SlotOfKeys(c) * nodes;
+  return c.access == "periodic" ? c.periodic.transmit_period_s : SlotOfKeys(c) * nodes;
 }
 
 Turns::Turns(const ChannelConfig& config, const RunConfig& run)

@@ -33,7 +33,7 @@ TimeNs Periodic::Next(int node, TimeNs from, const Attempt& /*attempt*/) const {
 }
 
 std::unique_ptr<MediumAccess> MakePeriodic(const ChannelConfig& config, const RunConfig& run) {
-  return std::make_unique<Periodic>(config, run);
+  return std::make_unique<Periodic>(config.periodic, run);
 }
 
 }  // namespace stg::acoustics

@@ -21,7 +21,7 @@ ModemChannel::ModemChannel(const ChannelConfig& config, const RunConfig& run,
       max_payload_(PropagationModels()
                        .Make(config.model, config.models, config)
                        ->max_payload(config, run.agents)),
-      freshness_s_(config.modem.freshness_s),
+      freshness_s_(config.physical.modem.freshness_s),
       addresses_(modems.addresses),
       table_(run.agents),
       sequences_(static_cast<std::size_t>(run.agents) * static_cast<std::size_t>(run.agents)),

@@ -275,7 +275,7 @@ ModemFile LoadModemFile(const std::string& path) {
   if (const auto violation = FindConflict(file.network.channel, file.network.run)) {
     loader.Refuse(*violation);
   }
-  const auto profiles = MakeProfiles(file.network.channel.modem, file.network.run.agents);
+  const auto profiles = MakeProfiles(file.network.channel.physical.modem, file.network.run.agents);
   for (std::size_t i = 0; i < file.vehicles.size(); ++i) {
     const ModemVehicle& v = file.vehicles[i];
     if (!v.modem && !v.transponder) continue;

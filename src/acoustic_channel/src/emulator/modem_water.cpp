@@ -29,7 +29,8 @@ const ChannelConfig& CheckedForModems(const ChannelConfig& config, const RunConf
     require(!access->listens() && access->Next(run.agents - 1, t, again) == t, "channel.access",
             "one that lets every packet leave at once: aloha, with channel.contention.rest_s 0");
   }
-  require(config.modem.queue == QueuePolicy::kFifo, "channel.physical.modem.queue", "fifo");
+  require(config.physical.modem.queue == QueuePolicy::kFifo, "channel.physical.modem.queue",
+          "fifo");
   return config;
 }
 
@@ -91,7 +92,7 @@ ModemWater::ModemWater(const ChannelConfig& config, const RunConfig& run,
   network_.Observe(this);
 }
 ModemWater::ModemWater(const ChannelConfig& config, const RunConfig& run, ModemHosts* hosts)
-    : ModemWater(config, run, std::make_unique<WaterMedium>(config, run.agents), hosts) {}
+    : ModemWater(config, run, std::make_unique<WaterMedium>(config.physical, run.agents), hosts) {}
 ModemWater::~ModemWater() = default;
 
 void ModemWater::Attach(int node, int address, const MakeEngine& make) {

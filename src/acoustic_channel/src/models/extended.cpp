@@ -19,6 +19,6 @@ void Describe(ExtendedConfig* c, config::Table* t) {
          "decay time tau_f of Eq. 6 with the age of the information");
 }
 
-ExtendedModel::ExtendedModel(const ChannelConfig& config) : config_(config) {}
+ExtendedModel::ExtendedModel(const ChannelConfig& config) : config_(config.extended) {}
 
 }  // namespace stg::acoustics

@@ -20,19 +20,20 @@ class PhysicalModel : public PropagationModel {
   }
   std::unique_ptr<LinkEstimator> MakeLinkEstimator(const ChannelConfig& config,
                                                    int nodes) const override {
-    return std::make_unique<ReceivedLinks>(config.modem, nodes);
+    return std::make_unique<ReceivedLinks>(config.physical.modem, nodes);
   }
   bool has_modems() const override { return true; }
   PacketTime packet_time(const ChannelConfig& config, int nodes) const override {
-    return {LongestAirtime(config.modem, nodes), LongestTurnaround(config.modem, nodes)};
+    return {LongestAirtime(config.physical.modem, nodes),
+            LongestTurnaround(config.physical.modem, nodes)};
   }
   std::size_t max_payload(const ChannelConfig& config, int nodes) const override {
-    return LongestPayload(config.modem, nodes);
+    return LongestPayload(config.physical.modem, nodes);
   }
   std::optional<config::Violation> FindConflict(const ChannelConfig& config,
                                                 int nodes) const override {
-    if (auto violation = acoustics::FindConflict(config.modem, nodes)) return violation;
-    return acoustics::FindConflict(config.water);
+    if (auto violation = acoustics::FindConflict(config.physical.modem, nodes)) return violation;
+    return acoustics::FindConflict(config.physical.water);
   }
 };
 
@@ -49,7 +50,7 @@ PhysicalChannel::PhysicalChannel(const ChannelConfig& config, const RunConfig& r
                                  LineOfSight line_of_sight)
     : network_(config, run, std::move(line_of_sight)),
       turns_(config, run),
-      freshness_s_(config.modem.freshness_s),
+      freshness_s_(config.physical.modem.freshness_s),
       present_(static_cast<std::size_t>(run.agents), 1) {}
 
 void PhysicalChannel::Reset(std::uint64_t seed, std::uint32_t episode) {

@@ -22,8 +22,8 @@ Network::Impl::Impl(const ChannelConfig& config, const RunConfig& run,
     : count_(run.agents),
       talkers_(run.agents - run.transponders),
       timekeepers_(run.timekeepers),
-      max_payload_(LongestPayload(config.modem, run.agents)),
-      config_(config.modem),
+      max_payload_(LongestPayload(config.physical.modem, run.agents)),
+      config_(config.physical.modem),
       medium_(std::move(medium)),
       access_(MakeMediumAccess(config, run)),
       events_(kEventsPerNode * static_cast<std::size_t>(run.agents)),
@@ -31,7 +31,7 @@ Network::Impl::Impl(const ChannelConfig& config, const RunConfig& run,
   const auto n = static_cast<std::size_t>(count_);
   const std::size_t waiting =
       config_.queue == QueuePolicy::kFifo ? static_cast<std::size_t>(config_.queue_length) : 1;
-  for (ModemProfile& profile : MakeProfiles(config.modem, count_)) {
+  for (ModemProfile& profile : MakeProfiles(config.physical.modem, count_)) {
     Node& node = nodes_.emplace_back();
     node.profile = std::move(profile);
     node.queue.reserve(waiting + 1);
@@ -170,8 +170,9 @@ double Network::Impl::EnergyJ(const Node& n, TimeNs t) const {
 Network::Network(const ChannelConfig& config, const RunConfig& run, std::unique_ptr<Medium> medium)
     : impl_(std::make_unique<Impl>(config, run, std::move(medium))) {}
 Network::Network(const ChannelConfig& config, const RunConfig& run, LineOfSight line_of_sight)
-    : Network(config, run,
-              std::make_unique<WaterMedium>(config, run.agents, std::move(line_of_sight))) {}
+    : Network(
+          config, run,
+          std::make_unique<WaterMedium>(config.physical, run.agents, std::move(line_of_sight))) {}
 Network::~Network() = default;
 
 void Network::Reset(std::uint64_t seed, std::uint32_t episode) { impl_->Reset(seed, episode); }

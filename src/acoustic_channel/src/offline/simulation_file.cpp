@@ -212,7 +212,7 @@ TrafficSpec ReadFlow(const std::string& file, const YamlTree& map, std::size_t i
 /// model covers neither. Between the points of a track the way is straight.
 void RequireInWater(const std::string& file, const Reader& reader, const SimulationFile& s) {
   if (!PropagationModels().Make(s.channel.model, s.channel.models, s.channel)->has_modems()) return;
-  const WaterConfig& water = s.channel.water;
+  const WaterConfig& water = s.channel.physical.water;
   const auto& items = reader.List("nodes");
   for (std::size_t i = 0; i < items.size(); ++i) {
     const SimulatedNode& node = s.nodes[i];

@@ -63,10 +63,10 @@ NetworkConfig FleetNetwork(double loss = 0.2) {
   n.run.agents = 3;
   n.run.seed = 7;
   n.channel.model = "extended";
-  n.channel.transmit_period_s = 0.1;
-  n.channel.max_range_m = 2000.0;
-  n.channel.loss_probability = loss;
-  n.channel.loss_distance_m = 1e9;
+  n.channel.periodic.transmit_period_s = 0.1;
+  n.channel.extended.max_range_m = 2000.0;
+  n.channel.extended.loss_probability = loss;
+  n.channel.extended.loss_distance_m = 1e9;
   return n;
 }
 
@@ -273,7 +273,7 @@ TEST(FleetConfig, TheSectionChannelIsEnoughAndTyposAreNamed) {
   EXPECT_EQ(n.run.seed, 3u);
   EXPECT_EQ(n.channel.model, "range");
   EXPECT_EQ(n.channel.range_m, 120.0);
-  EXPECT_EQ(n.channel.freshness_s, ChannelConfig().freshness_s);
+  EXPECT_EQ(n.channel.extended.freshness_s, ChannelConfig().extended.freshness_s);
   EXPECT_EQ(load("channel: {model: range}", {"channel.range_m=7"}).channel.range_m, 7.0);
   const auto error = [&](const std::string& text) -> std::string {
     try {

@@ -33,7 +33,7 @@ TransponderOptions Narrowband(int query_hz, int reply_hz, int turnaround_ms) {
 struct LblBench : ModemBench {
   LblBench(int modem_count, const std::vector<TransponderOptions>& transponders)
       : ModemBench(modem_count + static_cast<int>(transponders.size())) {
-    config.modem.profile = "micromodem_psk_r1";
+    config.physical.modem.profile = "micromodem_psk_r1";
     Make();
     for (int i = 0; i < run.agents; ++i) {
       water->Attach(i, i < modem_count ? i + 1 : -1,

@@ -75,7 +75,7 @@ TEST(ModemChannel, AStepsPacketIsHeardInALaterStep) {
   config.model = "physical";
   config.access = "aloha";
   config.contention.rest_s = 0.0;
-  config.modem.profile = "evologics_s2c";
+  config.physical.modem.profile = "evologics_s2c";
   RunConfig run;
   run.agents = 2;
   ModemChannelConfig modems;

@@ -145,7 +145,7 @@ TEST_F(JanusModems, WhatIsLostAfterItsBeginIsTold) {
 
 TEST(JanusForeign, AnOrdinaryVehicleHearsTheBits) {
   ModemBench bench(2);
-  bench.config.modem.profile = "janus";
+  bench.config.physical.modem.profile = "janus";
   bench.Make();
   bench.water->Attach(0, 1, [](ModemSurroundings* world) {
     return std::make_unique<janus::JanusModem>(janus::ModemOptions(), world);

@@ -41,8 +41,8 @@ struct ModemBench {
     run.agents = nodes;
     config.model = "physical";
     config.access = "aloha";
-    config.modem.queue = QueuePolicy::kFifo;
-    config.modem.profile = "evologics_s2c";
+    config.physical.modem.queue = QueuePolicy::kFifo;
+    config.physical.modem.profile = "evologics_s2c";
     auto stated = std::make_unique<StatedMedium>(nodes);
     medium = stated.get();
     for (int i = 0; i < nodes; ++i) {
@@ -65,7 +65,7 @@ struct ModemBench {
   }
   /// Gives every node a Micromodem. Addresses begin with 1. The modems have booted at 2.5 s.
   ModemWater& StartMicromodems(const std::string& firmware = "2.0.35490") {
-    config.modem.profile = "micromodem_psk_r1";
+    config.physical.modem.profile = "micromodem_psk_r1";
     Make();
     for (int i = 0; i < run.agents; ++i) {
       water->Attach(i, i + 1, [&](ModemSurroundings* world) {
@@ -87,7 +87,7 @@ struct ModemBench {
   }
   /// Gives every node a JANUS modem. Stations begin with 1.
   ModemWater& StartJanus() {
-    config.modem.profile = "janus";
+    config.physical.modem.profile = "janus";
     Make();
     for (int i = 0; i < run.agents; ++i) {
       water->Attach(i, i + 1, [&](ModemSurroundings* world) {

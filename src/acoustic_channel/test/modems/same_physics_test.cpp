@@ -19,11 +19,11 @@ ChannelConfig Water() {
   ChannelConfig config;
   config.model = "physical";
   config.access = "aloha";
-  config.modem.queue = QueuePolicy::kFifo;
-  config.modem.profile = "evologics_s2c";
+  config.physical.modem.queue = QueuePolicy::kFifo;
+  config.physical.modem.profile = "evologics_s2c";
   // The site is so loud that a neighbour is just understood. Bursts come in addition.
-  config.noise.site_db = 92.0;
-  config.noise.burst_every_s = 20.0;
+  config.physical.noise.site_db = 92.0;
+  config.physical.noise.burst_every_s = 20.0;
   return config;
 }
 

@@ -51,7 +51,7 @@ TEST(Slots, ThatCannotHoldAPacketAreAConfigurationError) {
     NetworkConfig s;
     s.channel.model = "physical";
     s.channel.access = access;
-    s.channel.modem.packet_bytes = 32;  // a packet takes 0.5035 s
+    s.channel.physical.modem.packet_bytes = 32;  // a packet takes 0.5035 s
     s.channel.slots.length_s = 1.0;
     s.channel.slots.guard_s = 0.5;
     const auto violation = config::FindViolation(s);
@@ -59,7 +59,7 @@ TEST(Slots, ThatCannotHoldAPacketAreAConfigurationError) {
     EXPECT_EQ(violation->keys.front(), "channel.slots.length_s");
     s.channel.slots.guard_s = 0.49;
     EXPECT_FALSE(config::FindViolation(s)) << access;
-    s.channel.modem.profile = "micromodem_fsk_r0";
+    s.channel.physical.modem.profile = "micromodem_fsk_r0";
     EXPECT_TRUE(config::FindViolation(s)) << access << ": 3.2 s";
   }
 }
@@ -77,14 +77,15 @@ TEST(Slots, ConcernNobodyOnIdealChannels) {
 TEST(Configuration, APacketThatNoFrameTakesIsRefused) {
   NetworkConfig s;
   s.channel.model = "physical";
-  s.channel.modem.profile = "janus";
+  s.channel.physical.modem.profile = "janus";
   EXPECT_FALSE(config::FindViolation(s));
-  s.channel.modem.packet_bytes = 9;
+  s.channel.physical.modem.packet_bytes = 9;
   auto violation = config::FindViolation(s);
   ASSERT_TRUE(violation);
   EXPECT_EQ(violation->keys.front(), "channel.physical.modem.packet_bytes");
-  s.channel.modem.packet_bytes = 0;
-  s.channel.modem.profiles = {"janus", "evologics_s2c"};  // these are shared out to 4 nodes
+  s.channel.physical.modem.packet_bytes = 0;
+  s.channel.physical.modem.profiles = {"janus",
+                                       "evologics_s2c"};  // these are shared out to 4 nodes
   violation = config::FindViolation(s);
   ASSERT_TRUE(violation);
   EXPECT_EQ(violation->keys.front(), "channel.physical.modem.profiles");
@@ -166,7 +167,7 @@ TEST(Profiles, HaveThePublishedAirtimes) {
 
 TEST(Profiles, IdealIsInstantAndLossless) {
   Bench b(3);
-  b.config.modem.profile = "ideal";
+  b.config.physical.modem.profile = "ideal";
   b.medium->SetLevel(0, 1, -100.0);
   b.medium->SetDelay(0, 2, 5.0);
   b.Start();

@@ -188,7 +188,7 @@ TEST(ModemEvents, APacketForNobodyIsSentAndNobodyIsGivenIt) {
 
 TEST(ModemEvents, APacketThatWaitsIsTakenBack) {
   ModemBench bench(2);
-  bench.config.modem.queue = QueuePolicy::kFifo;
+  bench.config.physical.modem.queue = QueuePolicy::kFifo;
   Network& network = bench.Start();
   for (const std::uint32_t tag : {7u, 8u}) {
     Transmission packet = bench.Packet(0, 1.0, kToAll, "hello");

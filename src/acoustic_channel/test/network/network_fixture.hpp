@@ -147,7 +147,7 @@ struct Bench {
     run.agents = nodes;
     config.model = "physical";
     config.access = "aloha";
-    config.modem.profile = SecondModem();
+    config.physical.modem.profile = SecondModem();
     auto stated = std::make_unique<StatedMedium>(nodes);
     medium = stated.get();
     medium_ = std::move(stated);

@@ -131,7 +131,7 @@ TEST(Interference, OfTheSameWaveformIsNotSpreadIntoNoise) {
   for (const std::string& name : ModemProfiles().Names()) {
     if (name == "ideal") continue;
     Bench b(3);
-    b.config.modem.profile = name;
+    b.config.physical.modem.profile = name;
     b.medium->SetLevel(0, 2, 60.0);
     b.medium->SetLevel(1, 2, 60.0);
     b.Start();
@@ -195,10 +195,10 @@ TEST(Reasons, AShareOfPacketsIsLostAsTheirProbabilitySays) {
 
 TEST(Waveforms, AreUnderstoodByTheirOwnKindAndNoiseToOthers) {
   Bench b(3);
-  b.config.modem.profiles = {"second", "second", "micromodem_fsk_r0"};  // 20 to 24 kHz
+  b.config.physical.modem.profiles = {"second", "second", "micromodem_fsk_r0"};  // 20 to 24 kHz
   b.medium->SetLevel(0, 1, 20.0);
   b.medium->SetLevel(2, 1, 15.0);
-  b.config.modem.packet_bytes = 32;
+  b.config.physical.modem.packet_bytes = 32;
   b.Play({{2, 0.5}, {0, 1.0}});
   EXPECT_EQ(b.log.Of(2, 1).reason, DropReason::kNotAcquired);
   EXPECT_EQ(b.log.Of(2, 0).reason, DropReason::kNotAcquired);

@@ -28,8 +28,8 @@ TEST(Queue, NewestReplacesTheOneThatWaits) {
 
 TEST(Queue, FifoKeepsTheOrderAndRefusesWhatIsTooMuch) {
   Bench b(2);
-  b.config.modem.queue = QueuePolicy::kFifo;
-  b.config.modem.queue_length = 2;
+  b.config.physical.modem.queue = QueuePolicy::kFifo;
+  b.config.physical.modem.queue_length = 2;
   b.Start();
   for (const std::uint32_t k : {0u, 1u, 2u, 3u}) b.Offer(0, 1.0 + 0.1 * k, kToAll, k);
   b.network->Advance(10 * kSecond);
@@ -82,12 +82,12 @@ std::vector<Log::Fate> Busy(std::uint64_t shuffle, const char* access) {
   run.agents = 5;
   ChannelConfig config;
   config.access = access;
-  config.modem.packet_bytes = 32;
+  config.physical.modem.packet_bytes = 32;
   config.contention.rest_s = 0.7;
   config.slots.length_s = 0.6;
   config.slots.guard_s = 0.05;
   config.slots.send_probability = 0.4;
-  config.noise.burst_every_s = 5.0;
+  config.physical.noise.burst_every_s = 5.0;
   Network network(config, run);
   Log log;
   network.Reset(7, 3);
@@ -182,8 +182,8 @@ TEST(Energy, CountsSendingReceivingAndIdling) {
 
 TEST(Clocks, ShiftTheOneWayTravelTime) {
   Bench b(2);
-  b.config.modem.clock_offset_std_s = 0.01;
-  b.config.modem.clock_drift_std_ppm = 20.0;
+  b.config.physical.modem.clock_offset_std_s = 0.01;
+  b.config.physical.modem.clock_drift_std_ppm = 20.0;
   b.medium->SetDelay(0, 1, 0.5);
   Network& network = b.Start(5);
   b.Offer(0, 1000.0);
@@ -200,7 +200,7 @@ TEST(Clocks, ShiftTheOneWayTravelTime) {
 
 TEST(Ping, GivesTheRangeWithoutSynchronisedClocks) {
   Bench b(3);
-  b.config.modem.clock_offset_std_s = 3.0;
+  b.config.physical.modem.clock_offset_std_s = 3.0;
   b.medium->SetDelay(0, 1, 0.5);
   Network& network = b.Start();
   network.Ping(0, 1, Ns(1.0), 10 * kSecond, 17);
@@ -245,7 +245,7 @@ TEST(Ping, ALaterOneOfTheSameSourceReplacesItAndIsAnswered) {
 
 TEST(Ping, ADriftingClockMeasuresAShareOfTheRoundTripWrongly) {
   Bench b(2);
-  b.config.modem.clock_drift_std_ppm = 100.0;
+  b.config.physical.modem.clock_drift_std_ppm = 100.0;
   b.medium->SetDelay(0, 1, 0.5);
   Network& network = b.Start();
   network.Ping(0, 1, 0, 10 * kSecond, 0);

@@ -42,7 +42,7 @@ std::optional<config::Violation> FindClockConflict(const AgentModel& s) {
   if (s.localization.by == RangesBy::kPing || s.localization.clocks == Clocks::kEstimated) {
     return {};
   }
-  const acoustics::ModemConfig& modem = s.channel.modem;
+  const acoustics::ModemConfig& modem = s.channel.physical.modem;
   if (modem.clock_offset_std_s <= kMostOffset_s && modem.clock_drift_std_ppm <= kMostDrift_ppm) {
     return {};
   }

@@ -17,8 +17,8 @@ PingAnswers::PingAnswers(const AgentModel& model)
       targets_(model.target.count),
       reach_m_(model.sensing.range_m),
       options_(model.sensing.relative()),
-      sound_(model.channel.water),
-      surface_z_m_(model.channel.water.surface_z_m),
+      sound_(model.channel.physical.water),
+      surface_z_m_(model.channel.physical.water.surface_z_m),
       way_(model.run) {
   answers_.reserve(kMostBetween);
 }

@@ -14,7 +14,7 @@ inline std::vector<Vec3<double>> ChartOf(const AgentModel& s) {
   std::vector<Vec3<double>> chart;
   for (const auto& at : s.stations.beacons) chart.push_back({at[0], at[1], at[2]});
   for (const auto& at : s.stations.crafts) {
-    chart.push_back({at[0], at[1], s.channel.water.surface_z_m});
+    chart.push_back({at[0], at[1], s.channel.physical.water.surface_z_m});
   }
   return chart;
 }
@@ -33,7 +33,8 @@ inline std::vector<AnchorModel> AnchorsOf(const AgentModel& s) {
 /// What an AUV assumes of the clocks.
 inline ClockModel ClocksOf(const AgentModel& s) {
   return {s.localization.clocks == Clocks::kEstimated && !s.pings_members(),
-          s.channel.modem.clock_offset_std_s, 1e-6 * s.channel.modem.clock_drift_std_ppm};
+          s.channel.physical.modem.clock_offset_std_s,
+          1e-6 * s.channel.physical.modem.clock_drift_std_ppm};
 }
 
 /// What an AUV assumes of all headings. It needs them if its modem measures directions.

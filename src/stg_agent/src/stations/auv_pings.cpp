@@ -28,7 +28,7 @@ double ReachOf(const AgentModel& model, const dynamics::SensingConfig& sensing) 
 /// Time from the request to the answer at the edge of the reach.
 TimeNs ExchangeOf(const acoustics::ChannelConfig& channel, int nodes, double reach_m) {
   double longest_s = 0.0;
-  for (const acoustics::ModemProfile& p : acoustics::MakeProfiles(channel.modem, nodes)) {
+  for (const acoustics::ModemProfile& p : acoustics::MakeProfiles(channel.physical.modem, nodes)) {
     longest_s = std::max(longest_s, 2.0 * p.airtime_s(1) + p.turnaround_s);
   }
   return std::llround((longest_s + 2.0 * reach_m / kSlowestSound_mps) * 1e9);

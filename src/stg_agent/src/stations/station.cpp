@@ -33,7 +33,7 @@ Station::Station(SharedConstants constants, int station)
       member_(constants_->model.run.agents + station),
       craft_(constants_->model.stations.is_craft(station)),
       home_W_(HomeOf(constants_->model.stations, station)),
-      sound_(constants_->model.channel.water),
+      sound_(constants_->model.channel.physical.water),
       heard_(static_cast<std::size_t>(constants_->model.run.agents)) {
   const AgentModel& model = constants_->model;
   if (craft_) {
@@ -106,8 +106,8 @@ void Station::Receive(const acoustics::Reception& reception, const Vec3<double>&
 
 void Station::MeasureRange(const NeighbourState& state, const acoustics::Reception& reception) {
   // The slowness depends on depths only, which a packet contains whole.
-  const double slowness =
-      SlownessBetween(sound_, constants_->model.channel.water.surface_z_m, told_W(), state.p_W);
+  const double slowness = SlownessBetween(
+      sound_, constants_->model.channel.physical.water.surface_z_m, told_W(), state.p_W);
   ranges_->Add({state.source, reception.transmit, reception.travel_time_s / slowness});
 }
 

@@ -66,9 +66,10 @@ TEST(Neighbourhood, QualityIsEquation5Or6OfEveryLinkForAnySwarmSize) {
       for (int i = 0; i < agents; ++i) {
         if (i == 1) continue;
         const NeighbourSight<double>& n = neighbours.sights()[static_cast<std::size_t>(i)];
-        const double q = s.channel.model == "range"
-                             ? acoustics::RangeQuality(n.distance_m, s.channel.range_m)
-                             : acoustics::ExtendedQuality(n.distance_m, n.age_s, s.channel);
+        const double q =
+            s.channel.model == "range"
+                ? acoustics::RangeQuality(n.distance_m, s.channel.range_m)
+                : acoustics::ExtendedQuality(n.distance_m, n.age_s, s.channel.extended);
         EXPECT_EQ(n.link_quality, q) << model;
         EXPECT_GT(q, 0.0 - 1e-300);
       }

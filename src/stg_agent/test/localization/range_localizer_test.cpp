@@ -26,8 +26,8 @@ AgentModel Model(int auvs, bool craft) {
   s.world.navigation.kind = "dead_reckoning";
   s.world.navigation.current_std_mps = 0.2;
   s.world.navigation.gps_depth_m = 0.0;
-  s.channel.water.sound_speed = acoustics::WaterConfig::SoundSpeed::kProfile;
-  s.channel.water.profile_speeds_mps.fill(kSound_mps);
+  s.channel.physical.water.sound_speed = acoustics::WaterConfig::SoundSpeed::kProfile;
+  s.channel.physical.water.profile_speeds_mps.fill(kSound_mps);
   s.agent.localization.kind = "ranges";
   if (craft) s.agent.stations.crafts = {{0.0, 0.0}};
   return s.model();

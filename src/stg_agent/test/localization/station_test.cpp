@@ -19,8 +19,8 @@ std::shared_ptr<const AgentConstants> Constants(const std::string& by) {
   s.run.time.dt_s = 0.5;
   s.run.time.decision_steps = 2;
   s.world.navigation.kind = "dead_reckoning";
-  s.channel.water.sound_speed = acoustics::WaterConfig::SoundSpeed::kProfile;
-  s.channel.water.profile_speeds_mps.fill(1500.0);
+  s.channel.physical.water.sound_speed = acoustics::WaterConfig::SoundSpeed::kProfile;
+  s.channel.physical.water.profile_speeds_mps.fill(1500.0);
   s.agent.track.filter = "measurements";
   s.agent.localization.kind = "ranges";
   s.agent.localization.by = by == "ping" ? RangesBy::kPing : RangesBy::kOneWay;

@@ -118,7 +118,7 @@ TEST(NoLeak, ANeighbourBeyondTheChannelChangesNoObservation) {
 TEST(Sharing, AnAgentOutOfSightLearnsTheTargetFromItsNeighbours) {
   Scenario s = Short(Shipped("medium"), 200);
   s.world.sensing.range_m = 0.3;
-  s.channel.loss_probability = 0.0;
+  s.channel.extended.loss_probability = 0.0;
   const VectorEnvOptions o;
   std::vector<Vec3<double>> p = kSquare;
   p[0] = {0.1, 0.0, 0.0};  // 0.2 m from the target; the other AUVs are more than 0.9 m away

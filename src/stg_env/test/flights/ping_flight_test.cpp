@@ -37,8 +37,8 @@ class PingTest : public ::testing::Test {
     ASSERT_EQ(channel_->bodies(), scenario_.world.sensing.pings() ? 3 : 2);
     p_W_ = {{0.0, 0.0, -kDepth_m}, {50.0, 0.0, -kDepth_m}, {target_m, 0.0, -kDepth_m}};
     p_W_.resize(static_cast<std::size_t>(channel_->bodies()));
-    modem_ = acoustics::MakeProfiles(scenario_.channel.modem, 1).front();
-    sound_mps_ = acoustics::SoundSpeedProfile(scenario_.channel.water).At(kDepth_m);
+    modem_ = acoustics::MakeProfiles(scenario_.channel.physical.modem, 1).front();
+    sound_mps_ = acoustics::SoundSpeedProfile(scenario_.channel.physical.water).At(kDepth_m);
     channel_->Reset(7, 0);
   }
 

@@ -202,7 +202,7 @@ TEST_F(ScenarioInput, EitherOfTwoChoicesPassesOverAKeyOfTheBase) {
       Write("base.yaml",
             "base: field.yaml\nchannel:\n  physical:\n    water:\n      sound_speed: profile\n"
             "      absorption: francois_garrison\n      temperature_c: 20.0\n");
-  EXPECT_EQ(LoadScenario(base).channel.water.temperature_c, 20.0);
+  EXPECT_EQ(LoadScenario(base).channel.physical.water.temperature_c, 20.0);
   LoadScenario(base, {}, {"channel.physical.water.absorption=thorp"});
 }
 
@@ -210,7 +210,7 @@ TEST_F(ScenarioInput, EitherOfTwoChoicesPassesOverAKeyOfTheBase) {
 TEST(AgentKeys, OnlyAnAccessWithTurnsHasARound) {
   acoustics::ChannelConfig c;
   c.slots.length_s = 2.0;
-  c.transmit_period_s = 30.0;
+  c.periodic.transmit_period_s = 30.0;
   const std::pair<const char*, double> rounds[] = {
       {"tdma", 8.0}, {"slotted_aloha", 8.0}, {"periodic", 30.0}, {"csma", 0.0}, {"aloha", 0.0}};
   for (const auto& [access, round_s] : rounds) {

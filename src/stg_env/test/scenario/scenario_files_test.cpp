@@ -138,10 +138,10 @@ TEST(StressConditions, DegradedCommunicationDegradesEveryAspectOfALink) {
     const acoustics::ChannelConfig good = LoadNamedScenario(kFolder, name).channel;
     for (const char* condition : {"degraded_communication", "combined_stress"}) {
       const acoustics::ChannelConfig bad = LoadNamedScenario(kFolder, name, condition).channel;
-      EXPECT_GT(bad.loss_probability, good.loss_probability);
-      EXPECT_LT(bad.loss_distance_m, good.loss_distance_m);
-      EXPECT_GT(bad.attenuation_per_m, good.attenuation_per_m);
-      EXPECT_GT(bad.transmit_period_s, good.transmit_period_s);
+      EXPECT_GT(bad.extended.loss_probability, good.extended.loss_probability);
+      EXPECT_LT(bad.extended.loss_distance_m, good.extended.loss_distance_m);
+      EXPECT_GT(bad.extended.attenuation_per_m, good.extended.attenuation_per_m);
+      EXPECT_GT(bad.periodic.transmit_period_s, good.periodic.transmit_period_s);
     }
   }
 }
@@ -284,7 +284,7 @@ TEST(ScenarioKeys, CoverEveryMemberOfTheStruct) {
   for (const char* end : {"lo", "hi"}) members.erase(end);
   // These put sections together or follow from other keys.
   for (const char* part : {"run", "world", "agent", "max_current_mps", "has_range", "has_bearing",
-                           "estimate_freshness_s", "accesses", "transponders", "timekeepers"}) {
+                           "accesses", "transponders", "timekeepers"}) {
     members.erase(part);
   }
   for (const std::string& member : members) {

@@ -275,7 +275,7 @@ TEST_F(ScenarioInput, KeysOfABaseArePassedOverWhereAnotherThingIsChosenOnTopOfIt
   const std::string overlay = Write("overlay.yaml", "channel:\n" + key);
   EXPECT_EQ(ErrorOf([&] { LoadScenario(base, {overlay}, {"channel.model=range"}); }),
             overlay + ":3: " + said);
-  EXPECT_EQ(LoadScenario(base, {overlay}).channel.loss_probability, 1.0);
+  EXPECT_EQ(LoadScenario(base, {overlay}).channel.extended.loss_probability, 1.0);
 }
 
 }  // namespace

@@ -4,10 +4,9 @@
 
 namespace stg::acoustics {
 
-/// `channel.range_m` and the keys of `channel.range`.
+/// Keys of `channel.range`.
 struct RangeConfig {
-  double range_m = 0.45;              ///< R_c of Eq. 5
-  double estimate_freshness_s = 2.0;  ///< decay time of shared estimates
+  double freshness_s = 2.0;  ///< decay time of shared estimates
 };
 void Describe(RangeConfig* c, config::Table* t);
 
