@@ -180,6 +180,10 @@ void Describe(ModemConfig* c, config::Table* t) {
       "dB",
       "added to the source level of every profile; the energy of a transmission does not change");
   const std::string section = "channel.physical.modem.";
+  ModemProfiles().Describe(
+      "modem", section + "profile",
+      [c] { return c->profiles.empty() ? std::vector<std::string>{c->profile} : c->profiles; },
+      &c->kinds, t);
   t->Own(section + "profile",
          {"fleet", {"alike"}, section + "profiles", [c] {
             return std::vector<std::string>{c->profiles.empty() ? "alike" : "mixed"};
@@ -227,7 +231,7 @@ std::vector<ModemProfile> MakeProfiles(const ModemConfig& config, int nodes) {
   std::vector<ModemProfile> fleet;
   for (int i = 0; i < nodes; ++i) {
     const std::string& name = names.empty() ? config.profile : names[static_cast<std::size_t>(i)];
-    fleet.push_back(*ModemProfiles().Make(name));
+    fleet.push_back(*ModemProfiles().Make(name, config.kinds));
     fleet.back().source_level_db += config.source_level_offset_db;
   }
   return fleet;

@@ -15,7 +15,7 @@ Helm::Helm(const VehicleConfig& vehicle, const VehicleConfig& believed,
     const std::string& model = vehicle.model_of(i);
     auto& autopilot = kinds_[model];
     if (autopilot == nullptr) {
-      autopilot = Autopilots().Make(model, believed, config);
+      autopilot = Autopilots().Make(model, config.kinds, believed, config);
     }
     states_ = std::max(states_, static_cast<std::size_t>(autopilot->state_size()));
     autopilots_.push_back(autopilot.get());

@@ -88,6 +88,8 @@ void Describe(WorldConfig* c, config::Table* t) {
   Describe(&c->navigation, t);
   Describe(&c->sensing, t);
   Describe(&c->control, t);
+  Autopilots().Describe("control.autopilot", "vehicle.model", VehicleOwner(&c->vehicle, {}).chosen,
+                        &c->control.autopilot.kinds, t);
   OwnByVehicle(c, t);
 }
 

@@ -16,12 +16,14 @@ FilterRegistry& TargetFilters() {
   return registry;
 }
 
-PacketLayout LayoutOf(const AgentModel& model) {
-  return TargetFilters().Make(model.track.filter, model, 0)->layout();
+std::unique_ptr<TargetFilter> MakeFilter(const AgentModel& model, int self) {
+  return TargetFilters().Make(model.track.filter, model.track.filters, model, self);
 }
 
+PacketLayout LayoutOf(const AgentModel& model) { return MakeFilter(model, 0)->layout(); }
+
 std::optional<config::Violation> FindFilterConflict(const AgentModel& model) {
-  const auto filter = TargetFilters().Make(model.track.filter, model, 0);
+  const auto filter = MakeFilter(model, 0);
   const auto sensor =
       dynamics::TargetSensors().Make(model.sensing.sensor, model.sensing.sensors, model.sensing);
   if (!filter->Takes(sensor->kind(), model.sensing.relative().ambiguous)) {

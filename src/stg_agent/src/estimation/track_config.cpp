@@ -56,22 +56,17 @@ void Describe(TrackConfig* c, config::Table* t) {
                  config::kNone, "-",
                  "target filter. kalman: uses positions and shared estimates; measurements: uses "
                  "measurements of any kind");
-  t->Thing({"target filter",
-            {"measurements"},
-            "track.filter",
-            [c] { return std::vector<std::string>{c->filter}; }},
-           "track.measurements", c, DescribeMeasurements);
+  const auto chosen = [c] { return std::vector<std::string>{c->filter}; };
+  t->Thing({"target filter", {"measurements"}, "track.filter", chosen}, "track.measurements", c,
+           DescribeMeasurements);
+  TargetFilters().Describe("track", "track.filter", chosen, &c->filters, t);
   // A registered filter may read the keys of the filter `kalman`, too.
   std::vector<std::string> others = TargetFilters().Names();
   others.erase(std::find(others.begin(), others.end(), "measurements"));
   for (const char* key : {"process_accel_std_mps2", "initial_speed_std_mps", "gate_sigma"}) {
     // Files state them also for other filters, because a command may choose `kalman`.
-    t->Own(std::string("track.") + key, {"target filter",
-                                         others,
-                                         "track.filter",
-                                         [c] { return std::vector<std::string>{c->filter}; },
-                                         {},
-                                         true});
+    t->Own(std::string("track.") + key,
+           {"target filter", others, "track.filter", chosen, {}, true});
   }
   for (const char* key : {"shear_std_mps", "shear_memory_s"}) {
     t->Own(std::string("track.measurements.") + key,

@@ -22,8 +22,7 @@ Inbox::Inbox(SharedConstants constants, int id)
   if (!constants_->model.sensing.labelled) unlabelled_.emplace(constants_->model, id_);
   if (constants_->model.surfaces()) surfacing_.emplace(constants_->model, id_);
   for (int k = 0; k < constants_->model.beliefs(); ++k) {
-    filters_.push_back(
-        TargetFilters().Make(constants_->model.track.filter, constants_->model, id_));
+    filters_.push_back(MakeFilter(constants_->model, id_));
   }
   if (id < 0 || id >= constants_->model.run.agents) {
     throw std::invalid_argument("agent index outside the swarm");

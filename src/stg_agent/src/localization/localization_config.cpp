@@ -63,11 +63,10 @@ void Describe(LocalizationConfig* c, config::Table* t) {
   t->AddOptional("kind", config::Name(&c->kind, Localizers().Names()), "uncorrected", kNone, "-",
                  "correction of the AUVs' reckoned positions. uncorrected: none; ranges: by ranges "
                  "to each other and to stations");
-  t->Thing({"localizer",
-            {"ranges"},
-            "localization.kind",
-            [c] { return std::vector<std::string>{c->kind}; }},
-           "localization.ranges", c, DescribeRanges);
+  const auto chosen = [c] { return std::vector<std::string>{c->kind}; };
+  t->Thing({"localizer", {"ranges"}, "localization.kind", chosen}, "localization.ranges", c,
+           DescribeRanges);
+  Localizers().Describe("localization", "localization.kind", chosen, &c->kinds, t);
   const auto by = [c] {
     return std::vector<std::string>{c->by == RangesBy::kPing ? "ping" : "one_way"};
   };

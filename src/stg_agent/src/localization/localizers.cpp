@@ -40,7 +40,7 @@ bool AgentModel::locates() const { return localization.kind != kUncorrected; }
 
 std::unique_ptr<Localizer> MakeLocalizer(const AgentModel& model, int self) {
   if (!model.locates()) return nullptr;
-  return Localizers().Make(model.localization.kind, model, self);
+  return Localizers().Make(model.localization.kind, model.localization.kinds, model, self);
 }
 
 }  // namespace stg::agent

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "auv_common/config/field.hpp"
+#include "auv_common/config/options.hpp"
 
 namespace stg::acoustics {
 
@@ -17,6 +17,7 @@ enum class QueuePolicy {
 struct ModemConfig {
   std::string profile = "evologics_s2c";  ///< of ModemProfiles(), for every node
   std::vector<std::string> profiles;      ///< one for each node; empty: all have `profile`
+  config::OptionsByName kinds = {};       ///< options of profiles that are registered
   int packet_bytes = 0;                   ///< longest payload of the network; 0: the frames'
   QueuePolicy queue = QueuePolicy::kNewest;
   int queue_length = 8;

@@ -11,7 +11,7 @@
 #include "auv_common/registry.hpp"
 #include "auv_common/time.hpp"
 
-/// Modems as data: a new one is one entry of the table in modem_profile.cpp.
+/// Modems as data.
 namespace stg::acoustics {
 
 /// Data of a modem for the network. Levels in dB re 1 uPa at 1 m.
@@ -48,8 +48,9 @@ struct ModemProfile {
   TimeNs turnaround() const;
 };
 
-/// All profiles, by the name that `channel.physical.modem.profile` takes. A program adds its own
-/// before it loads a configuration: ModemProfiles().Add("mine", [] { return ...; }).
+/// All profiles, by the name that `channel.physical.modem.profile` takes. To add a profile with
+/// options of its own, write a new file and one line in src/modem/modem_profile.cpp; another
+/// program calls Add before it loads a configuration.
 using ModemProfileRegistry = Registry<ModemProfile>;
 ModemProfileRegistry& ModemProfiles();
 

@@ -32,8 +32,9 @@ class Autopilot {
 };
 
 /// Autopilots by the name of the vehicle (`vehicle.model`) that they steer. A vehicle without an
-/// autopilot is commanded by force and moment, Eqs. 24 to 26. To add an autopilot, write a new file
-/// and one line in src/autopilot/autopilots.cpp; another program calls Add.
+/// autopilot is commanded by force and moment, Eqs. 24 to 26. The keys of its own options are below
+/// `control.autopilot`. To add an autopilot, write a new file and one line in
+/// src/autopilot/autopilots.cpp; another program calls Add.
 using AutopilotRegistry = Registry<const Autopilot, const VehicleConfig&, const AutopilotConfig&>;
 AutopilotRegistry& Autopilots();
 

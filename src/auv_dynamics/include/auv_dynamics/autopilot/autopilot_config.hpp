@@ -1,6 +1,6 @@
 #pragma once
 
-#include "auv_common/config/field.hpp"
+#include "auv_common/config/options.hpp"
 
 namespace stg::dynamics {
 
@@ -19,6 +19,7 @@ struct AutopilotConfig {
   double climb_integral_ps = 0.1;
   double pitch_frequency_radps = 1.2;
   double pitch_integral_ps3 = 0.3;
+  config::OptionsByName kinds = {};  ///< options of autopilots that are registered
 };
 
 /// Keys, units and ranges of the section `control.autopilot`, which a file may leave out.

@@ -33,7 +33,8 @@ ControllerNode::ControllerNode()
   ros::NodeHandle node;
   if (dynamics::Helm::Steers(scenario_.world.vehicle)) {
     const std::string& model = scenario_.world.vehicle.model_of(id_);
-    autopilot_ = dynamics::Autopilots().Make(model, believed_, scenario_.world.control.autopilot);
+    const dynamics::AutopilotConfig& autopilot = scenario_.world.control.autopilot;
+    autopilot_ = dynamics::Autopilots().Make(model, autopilot.kinds, believed_, autopilot);
     memory_.assign(static_cast<std::size_t>(autopilot_->state_size()), 0.0);
     actuators_.header.frame_id = body_frame_;
     actuators_.vehicle = model;

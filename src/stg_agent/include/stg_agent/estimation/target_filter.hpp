@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <memory>
 #include <optional>
 
 #include "auv_common/registry.hpp"
@@ -108,6 +109,9 @@ class TargetFilter {
 /// @param self index of the AUV
 using FilterRegistry = Registry<TargetFilter, const AgentModel&, const int&>;
 FilterRegistry& TargetFilters();
+
+/// The filter that the model chooses, with its options.
+std::unique_ptr<TargetFilter> MakeFilter(const AgentModel& model, int self);
 
 /// Layout of the packets of a scenario's agents, as its filter chooses it.
 PacketLayout LayoutOf(const AgentModel& model);

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "auv_common/config/field.hpp"
+#include "auv_common/config/options.hpp"
 
 namespace stg::agent {
 
@@ -14,6 +14,7 @@ enum class ObserverErrors { kSteps, kRates, kLocated };
 /// The agents' target filter and their memory of neighbours.
 struct TrackConfig {
   std::string filter = "kalman";         ///< name in the registry of target filters
+  config::OptionsByName filters = {};    ///< options of filters that are registered
   double process_accel_std_mps2 = 0.01;  ///< white acceleration of the target model
   double measurement_std_m = 0.001;      ///< floor of a detection's standard deviation
   double initial_speed_std_mps = 0.01;

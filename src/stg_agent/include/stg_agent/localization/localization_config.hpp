@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "auv_common/config/field.hpp"
+#include "auv_common/config/options.hpp"
 
 namespace stg::agent {
 
@@ -21,6 +21,7 @@ enum class Clocks {
 /// How AUVs correct their reckoned positions.
 struct LocalizationConfig {
   std::string kind = "uncorrected";  ///< name in the registry of localizers
+  config::OptionsByName kinds = {};  ///< options of localizers that are registered
   // Of `ranges`: deviations of each horizontal component, and correlation times.
   double current_std_mps = 0.2;  ///< of the current that all AUVs share
   double current_memory_s = 43200.0;
