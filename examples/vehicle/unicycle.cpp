@@ -61,13 +61,24 @@ class Unicycle : public Vehicle {
   Space actuators_, actions_;
 };
 
+struct UnicycleAutopilotOptions {
+  double turn_first_rad = 3.2;
+};
+
+void Describe(UnicycleAutopilotOptions* o, config::Table* t) {
+  t->Add("turn_first_rad", &o->turn_first_rad, config::Positive(3.2), "rad",
+         "with a larger course error, the vehicle turns before it drives");
+}
+
 /// Turns towards the commanded velocity, and drives with its component along the heading.
 class UnicycleAutopilot : public Autopilot {
  public:
-  UnicycleAutopilot(const VehicleConfig& vehicle, const AutopilotConfig& config)
+  UnicycleAutopilot(const UnicycleAutopilotOptions& options, const VehicleConfig& vehicle,
+                    const AutopilotConfig& config)
       : speed_mps_(vehicle.max_velocity_mps[0]),
         turn_radps_(vehicle.max_rate_radps[2]),
-        gain_ps_(config.course_gain_ps) {}
+        gain_ps_(config.course_gain_ps),
+        turn_first_rad_(options.turn_first_rad) {}
 
   int state_size() const override { return 0; }
   void Steer(const Vec3<double>& v_des_W, const Navigation<double>& nav, double, double*,
@@ -85,11 +96,12 @@ class UnicycleAutopilot : public Autopilot {
     const Vec3<T> v_des_B = RotationOf(nav.q_WB).TransposeTimes(v_des_W);
     const Mask<T> moves = v_des_B.x * v_des_B.x + v_des_B.y * v_des_B.y > T(1e-12);
     const T error = Atan2(Select(moves, v_des_B.y, T(0.0)), Select(moves, v_des_B.x, T(1.0)));
-    command[0] = Clip(v_des_B.x, T(0.0), T(speed_mps_));
+    const T speed = Clip(v_des_B.x, T(0.0), T(speed_mps_));
+    command[0] = Select(error * error > T(turn_first_rad_ * turn_first_rad_), T(0.0), speed);
     command[1] = Clip(error * T(gain_ps_), T(-turn_radps_), T(turn_radps_));
   }
 
-  double speed_mps_, turn_radps_, gain_ps_;
+  double speed_mps_, turn_radps_, gain_ps_, turn_first_rad_;
 };
 
 std::unique_ptr<const Vehicle> MakeUnicycle(const UnicycleOptions& options,
@@ -97,9 +109,10 @@ std::unique_ptr<const Vehicle> MakeUnicycle(const UnicycleOptions& options,
   return std::make_unique<Unicycle>(options, config);
 }
 
-std::unique_ptr<const Autopilot> MakeAutopilot(const VehicleConfig& vehicle,
+std::unique_ptr<const Autopilot> MakeAutopilot(const UnicycleAutopilotOptions& options,
+                                               const VehicleConfig& vehicle,
                                                const AutopilotConfig& config) {
-  return std::make_unique<UnicycleAutopilot>(vehicle, config);
+  return std::make_unique<UnicycleAutopilot>(options, vehicle, config);
 }
 
 }  // namespace

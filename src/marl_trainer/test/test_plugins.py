@@ -54,6 +54,34 @@ traffic:
   - {{source: 0, kind: periodic, period_s: 1, bytes: 8}}
 """
 
+# By library: its scenario, the choice of the thing, its key with a value, another value of it, and a
+# metric on which the key has an effect.
+KINDS = {
+    "tracked": ("medium", {"navigation.kind": "tracked"},
+                ("navigation.tracked.std_m", 0.01), 0.1, "return"),
+    "last_seen": ("field", {"track.filter": "last_seen", "sensing.sensor": "position"},
+                  ("track.last_seen.speed_std_mps", 0.5), 1.0, "nees"),
+    "forecast": ("deep", {"localization.kind": "forecast"},
+                 ("localization.forecast.std_mps", 0.1), 0.3, "navigation_nees"),
+    "slow_fsk": ("physical", {"channel.physical.modem.profile": "slow_fsk",
+                              "channel.physical.modem.slow_fsk.source_level_db": 140},
+                 ("channel.physical.modem.slow_fsk.bit_rate_bps", 600.0), 4000.0, "return"),
+    "unicycle": ("medium", {"vehicle.model": "unicycle"},
+                 ("control.autopilot.unicycle.turn_first_rad", 0.1), 1.0, "return"),
+}  # fmt: skip
+
+
+def as_yaml(keys):
+    """Returns {"a.b": value} as the text of a file."""
+    tree = {}
+    for path, value in keys.items():
+        *sections, key = path.split(".")
+        branch = tree
+        for section in sections:
+            branch = branch.setdefault(section, {})
+        branch[key] = value
+    return "".join(f"{section}: {json.dumps(part)}\n" for section, part in tree.items())
+
 
 class Plugins(unittest.TestCase):
     """The examples, as libraries."""
@@ -121,6 +149,28 @@ class Plugins(unittest.TestCase):
         often, seldom = (evaluate(*lottery, "--set", f"channel.lottery.mean_s={mean}")
                          for mean in (0.5, 8))
         self.assertNotEqual(often["return"], seldom["return"])
+
+    def test_a_file_an_option_and_python_set_a_key_alike(self):
+        for name, (scenario, choice, (key, value), other, metric) in KINDS.items():
+            with self.subTest(name):
+                keys = {**choice, key: value}
+                plugin = ("--scenario", scenario, "--plugin", library(name))
+                by_option, changed = (
+                    evaluate(*plugin, *(f"--set={k}={v}" for k, v in {**keys, key: x}.items()))
+                    for x in (value, other)
+                )
+                self.assertNotEqual(by_option[metric], changed[metric], "the key has effect")
+                path = self.write("own.yaml", f"base: {scenario}.yaml\nname: {scenario}\n"
+                                  f"plugins: [{library(name)}]\n{as_yaml(keys)}")  # fmt: skip
+                by_file = evaluate("--scenario", path)
+                stg.load_plugin(library(name))
+                short = {"time.episode_steps": 60, "time.tail_steps": 20}
+                by_python = stg.evaluate("pursuit", scenario, episodes=2, overrides={**keys, **short})
+                for same in (by_file, by_python):
+                    self.assertEqual(same[metric], by_option[metric])
+                self.assertEqual(by_file["scenario_hash"], by_option["scenario_hash"])
+                with self.assertRaisesRegex(stg.UserError, key):
+                    stg.load_scenario(scenario, overrides={**keys, key: -1.0})
 
     def test_an_algorithm_trains_and_what_it_wrote_flies(self):
         out = self.folder / "run"
