@@ -83,10 +83,15 @@ class Diffs(unittest.TestCase):
 
     page = DOCS / "how_to" / "in_this_repository.md"
 
+    def test_every_registry_has_a_section(self):
+        headers = "".join(path.read_text() for path in SOURCES.glob("*/include/**/*.hpp"))
+        registries = re.findall(r"^using (\w+) = Registry<", headers, re.M)
+        self.assertGreater(len(registries), 10)
+        shown = re.findall(r"^\+ +STG_ENTRY\((\w+), \w+\)", self.page.read_text(), re.M)
+        self.assertEqual(sorted(shown), sorted(registries))
+
     def test_every_diff_applies(self):
-        sections = self.page.read_text().split("\n## ")[1:]
-        self.assertEqual(len(sections), len(list((DOCS / "how_to").glob("add_*.md"))))
-        for section in sections:
+        for section in self.page.read_text().split("\n## ")[1:]:
             with self.subTest(section.splitlines()[0]):
                 diff = re.search(r"```diff\n(.*?)```", section, re.S).group(1)
                 done = subprocess.run(
@@ -139,7 +144,7 @@ class Sources(unittest.TestCase):
 
 
 class HowTo(unittest.TestCase):
-    """Each page on how to add something has an example that is compiled and tested."""
+    """Each kind of thing that can be added has an example that is compiled and tested."""
 
     THINGS = (
         "vehicle",
@@ -151,6 +156,14 @@ class HowTo(unittest.TestCase):
         "algorithm",
         "reward_term",
     )
+    # Their examples. The page of all diffs shows them.
+    WITHOUT_PAGE = {
+        "autopilot": "vehicle/unicycle.cpp",
+        "localizer": "localizer/forecast.cpp",
+        "modem_profile": "modem_profile/slow_fsk.cpp",
+        "navigation_system": "navigation_system/tracked.cpp",
+        "target_filter": "target_filter/last_seen.cpp",
+    }
 
     def pages(self):
         """Yields (thing, its page, the path of its example from docs/how_to)."""
@@ -168,6 +181,20 @@ class HowTo(unittest.TestCase):
                 self.assertTrue(f"({example})" in index, example)
                 self.assertTrue(f"({example})" in (DOCS / "how_to" / page).read_text(), page)
                 self.assertTrue(f"  {example.partition('examples/')[2]}\n" in build, example)
+
+    def test_a_thing_without_a_page_is_in_the_index_and_its_diff_is_shown(self):
+        index = (DOCS / "how_to" / "README.md").read_text()
+        diffs = (DOCS / "how_to" / "in_this_repository.md").read_text()
+        build = (ROOT / "examples" / "CMakeLists.txt").read_text()
+        for thing, example in self.WITHOUT_PAGE.items():
+            with self.subTest(thing):
+                title = ("An " if thing[0] in "aeiou" else "A ") + thing.replace("_", " ")
+                anchor = title.lower().replace(" ", "-")
+                self.assertTrue(f"\n## {title}\n" in diffs, title)
+                self.assertTrue(f"(in_this_repository.md#{anchor})" in index, anchor)
+                for text in (index, diffs):
+                    self.assertTrue(f"(../../examples/{example})" in text, example)
+                self.assertTrue(f"  {example}\n" in build, example)
 
     def test_the_pages_are_alike(self):
         for _, page, _ in self.pages():
