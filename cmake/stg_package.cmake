@@ -153,7 +153,7 @@ function(stg_node_target target)
     stg_shared_version(${target})
   endif()
   stg_unity(${target})
-  stg_optimise(${target} -O2)
+  stg_optimise(${target} -O1)
 endfunction()
 
 # stg_graph_node(TARGET NAME [LIBRARY ...]): sets up a node called NAME. `./stg run` starts it, so the
