@@ -67,19 +67,26 @@ class Refusals(unittest.TestCase):
         self.assertEqual(output.count("scenario 'medium_release' has mode: truth"), 1, output)
 
     def test_a_private_parameter_that_a_node_does_not_read_is_refused(self):
-        (self.folder / "own.launch").write_text(
-            '<launch><env name="STG_REFUSAL_ENDS_LAUNCH" value="1"/>'
-            '<param name="/markers/overview/trail_s" value="5"/>'
-            '<param name="/markers/rate_hs" value="5"/>'
-            '<node name="markers" pkg="stg_monitor" type="marker_node" output="screen"/></launch>')
-        program = self.folder / "own"
-        program.write_text(f'#!/bin/sh\nexec roslaunch -p "$2" "{self.folder}/own.launch"\n')
-        program.chmod(0o755)
-        process, _ = launch(self.folder, program=program)
-        self.addCleanup(stop, process)
-        output = process.communicate(timeout=60)[0]
-        self.assertIn("parameter rate_hs: this node does not read it, did you mean rate_hz? "
-                      "('rosparam delete /markers/rate_hs' removes it", output)
+        for parameters, node, wrong, meant in (
+                ({"markers/overview/trail_s": 5, "markers/rate_hs": 5},
+                 '<node name="markers" pkg="stg_monitor" type="marker_node" output="screen"/>',
+                 "markers/rate_hs", "rate_hz"),
+                ({"view/rate_hz": 5, "view/prot": 8399},
+                 '<node name="view" pkg="stg_monitor" type="view_server.py" output="screen" required="true"/>',
+                 "view/prot", "port")):
+            with self.subTest(wrong):
+                stated = "".join(f'<param name="/{name}" value="{value}"/>'
+                                 for name, value in parameters.items())
+                (self.folder / "own.launch").write_text(
+                    f'<launch><env name="STG_REFUSAL_ENDS_LAUNCH" value="1"/>{stated}{node}</launch>')
+                program = self.folder / "own"
+                program.write_text(f'#!/bin/sh\nexec roslaunch -p "$2" "{self.folder}/own.launch"\n')
+                program.chmod(0o755)
+                process, _ = launch(self.folder, program=program)
+                self.addCleanup(stop, process)
+                output = process.communicate(timeout=60)[0]
+                self.assertIn(f"parameter {wrong.split('/')[1]}: this node does not read it, did you "
+                              f"mean {meant}? ('rosparam delete /{wrong}' removes it", output)
 
     def test_an_agent_that_nobody_starts_is_named_while_it_is_waited_for(self):
         process, _ = launch(self.folder, "medium.launch", "table:=false", "external:=[2]",

@@ -9,6 +9,7 @@ ssh -L 8300:127.0.0.1:8300 HOST brings the page to another machine.
 
 import stg_common.quiet_start  # first import: Ctrl-C is blocked until here, see graph.launch
 import asyncio
+import difflib
 import os
 import re
 import threading
@@ -21,6 +22,7 @@ from stg_view.page import PageError, live_page
 from stg_view.recording import encode
 
 HOST = "127.0.0.1"
+PARAMETERS = ("nice", "port", "rate_hz", "unseen_share")  # private ones
 # The nodes of a run in lockstep wait for each other. This node works while they leave a processor idle.
 NICE = 19
 # Only pages of this machine may connect. Another site in the same browser has another origin and host.
@@ -120,10 +122,24 @@ async def own_only(request, handler):
     return await handler(request)
 
 
+def require_known_parameters():
+    """Refuses private parameters that this node does not read, as the nodes in C++ do."""
+    space = rospy.get_name() + "/"
+    for path in rospy.get_param_names():
+        name = path[len(space):]
+        if not path.startswith(space) or name in PARAMETERS:
+            continue
+        near = difflib.get_close_matches(name, PARAMETERS, 1)
+        meant = f", did you mean {near[0]}?" if near else ""
+        raise PageError(f"parameter {name}: this node does not read it{meant} ('rosparam delete {path}' "
+                        "removes it from the ROS master)")
+
+
 def main():
     """Runs until ROS ends it."""
     # It only uses the wall clock, because a run in lockstep sends /clock at every step.
     rospy.init_node("view_server", disable_signals=False, disable_rostime=True)
+    require_known_parameters()
     port, rate_hz = rospy.get_param("~port", 8300), rospy.get_param("~rate_hz", 10.0)
     if not (isinstance(port, int) and 1 <= port <= 65535 and isinstance(rate_hz, (int, float)) and 0.1 <= rate_hz <= 100):
         raise PageError(f"port {port} or rate_hz {rate_hz} is out of range: a port is 1 to 65535, a rate 0.1 to 100")
