@@ -93,20 +93,22 @@ def end_session(session):
             time.sleep(0.1)
 
 
-def environment_of(command):
-    """Returns the environment of a test. A Python test must find the modules in its folder, which catkin's
-    `nosetests -P` prevents."""
+def with_modules(command):
+    """Returns the command of a test with the folders of its Python files in PYTHONPATH. catkin's `nosetests -P`
+    does not add them, and catkin's script at the start of the command may replace PYTHONPATH."""
+    if not command[0].endswith("env_cached.sh"):
+        return command
     folders = {os.path.dirname(file) for file in re.findall(r"/\S+\.py(?= )", " ".join(command[4:]))}
     path = os.pathsep.join([*sorted(folders), os.environ.get("PYTHONPATH", "")])
-    return dict(os.environ, PYTHONPATH=path)
+    return [command[0], "/usr/bin/env", f"PYTHONPATH={path}", *command[1:]]
 
 
 def execute(command, log_path):
     """Runs `command` in its own session. Returns its exit status, or None beyond the time limit."""
     with open(log_path, "wb") as log:
         process = subprocess.Popen(
-            command, stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True,
-            env=environment_of(command),
+            with_modules(command), stdin=subprocess.DEVNULL, stdout=log, stderr=log,
+            start_new_session=True,
         )  # fmt: skip
         try:
             return process.wait(TIMEOUT_S)
