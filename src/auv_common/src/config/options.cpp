@@ -27,7 +27,9 @@ void ApplyPairs(const Table& table, const std::string& pairs, const std::string&
       for (const Field& known : table.fields()) keys.push_back(known.path);
       const std::string nearest = NearestName(key, keys);
       throw UserError(where + "no such constant: " + key +
-                      (nearest.empty() ? "" : "; did you mean " + nearest + "?"));
+                      (!nearest.empty() ? "; did you mean " + nearest + "?"
+                       : keys.empty()   ? "; it has none"
+                                        : "; it has " + JoinNames(keys)));
     }
     if (const auto message = ParseValue(*field, ParseYaml(value, where + key, false))) {
       throw UserError(where + key + ": " + *message);

@@ -69,7 +69,10 @@ TEST(Controllers, AWrongConstantIsRefusedAndTheMessageQuotesIt) {
   }
   EXPECT_EQ(ErrorOf("pursuit:gain=2x"), "'pursuit:gain=2x': gain: expected a number, found '2x'");
   EXPECT_EQ(ErrorOf("pursuit:cap=2"), "'pursuit:cap=2': cap: 2.0 is out of range [0, 1]");
-  EXPECT_EQ(ErrorOf("pursuit:speed=1"), "'pursuit:speed=1': no such constant: speed");
+  EXPECT_EQ(ErrorOf("idle:gain=1"), "'idle:gain=1': no such constant: gain; it has none");
+  EXPECT_EQ(ErrorOf("pursuit:speed=1")
+                .rfind("'pursuit:speed=1': no such constant: speed; it has gain", 0),
+            0u);
   EXPECT_EQ(ErrorOf("pursuit:gian=2"),
             "'pursuit:gian=2': no such constant: gian; did you mean gain?");
   EXPECT_EQ(ErrorOf("pursuit:gain=1,gain=3"), "'pursuit:gain=1,gain=3': gain: given twice");
