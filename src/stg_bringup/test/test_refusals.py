@@ -13,6 +13,11 @@ from run_launcher import launch, stop
 BRINGUP = pathlib.Path(rospkg.RosPack().get_path("stg_bringup"))
 
 
+def output_of(process):
+    """Returns what a launch prints until its end. On a busy machine the end may take more than a minute."""
+    return process.communicate(timeout=180)[0]
+
+
 class Refusals(unittest.TestCase):
     """Plain roslaunch and `./stg run`."""
 
@@ -28,7 +33,7 @@ class Refusals(unittest.TestCase):
                             f"policy:={BRINGUP}/policies/medium.onnx", "scenario:=mine.yaml",
                             program=shutil.which("roslaunch"))
         self.addCleanup(stop, process)
-        output = process.communicate(timeout=60)[0]
+        output = output_of(process)
         self.assertIn("this node refuses its configuration, so the launch ends", output)
         self.assertIn("of the shipped scenarios it fits scenario:= ", output)
         self.assertRegex(output, "it fits scenario:= .*medium")
@@ -40,7 +45,7 @@ class Refusals(unittest.TestCase):
                             "episodes:=1", "real_time_factor:=0", "deadline:=20", "agents:=1",
                             "overrides:=[time.episode_steps=40, time.tail_steps=10]")
         self.addCleanup(stop, process)
-        output = process.communicate(timeout=60)[0]
+        output = output_of(process)
         self.assertEqual(process.returncode, 0, output)
         self.assertEqual(output.count("no policy is shipped for a scenario named 'mine', so the controller 'pursuit_separated' decides"), 1, output)
 
@@ -53,7 +58,7 @@ class Refusals(unittest.TestCase):
                 process, _ = launch(self.folder, "medium.launch", "table:=false", *arguments,
                                     program=shutil.which("roslaunch"))
                 self.addCleanup(stop, process)
-                output = process.communicate(timeout=90)[0]
+                output = output_of(process)
                 self.assertIn(reason, output)
                 self.assertIn("this node refuses its configuration, so the launch ends", output)
 
@@ -62,7 +67,7 @@ class Refusals(unittest.TestCase):
                             "scenario:=medium_release", "real_time_factor:=0", "deadline:=20",
                             "policy:=pursuit", "overrides:=[time.episode_steps=40, time.tail_steps=10]")
         self.addCleanup(stop, process)
-        output = process.communicate(timeout=60)[0]
+        output = output_of(process)
         self.assertEqual(process.returncode, 0, output)
         self.assertEqual(output.count("scenario 'medium_release' has mode: truth"), 1, output)
 
@@ -84,7 +89,7 @@ class Refusals(unittest.TestCase):
                 program.chmod(0o755)
                 process, _ = launch(self.folder, program=program)
                 self.addCleanup(stop, process)
-                output = process.communicate(timeout=60)[0]
+                output = output_of(process)
                 self.assertIn(f"parameter {wrong.split('/')[1]}: this node does not read it, did you "
                               f"mean {meant}? ('rosparam delete /{wrong}' removes it", output)
 
