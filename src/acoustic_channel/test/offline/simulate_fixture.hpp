@@ -2,16 +2,16 @@
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
+
+#include "auv_common/testing/temporary_folder.hpp"
 
 namespace stg::acoustics {
 
@@ -53,13 +53,6 @@ class Simulate : public ::testing::Test {
     }
   };
 
-  void SetUp() override {
-    folder_ = testing::TempDir() + "simulate_" + std::to_string(::getpid()) + "_" +
-              testing::UnitTest::GetInstance()->current_test_info()->name();
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   static std::string Read(const std::string& file) {
     std::ostringstream text;
     text << std::ifstream(file).rdbuf();
@@ -97,7 +90,8 @@ class Simulate : public ::testing::Test {
     return result;
   }
 
-  std::string folder_;
+  const TemporaryFolder temporary_;
+  const std::string folder_ = temporary_.path();
 };
 
 /// One line of the list of nodes.

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "auv_common/error.hpp"
+#include "auv_common/testing/temporary_folder.hpp"
 
 namespace stg {
 namespace {
@@ -16,12 +17,6 @@ namespace fs = std::filesystem;
 
 class RegularFile : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = testing::TempDir() + "regular_file_" + std::to_string(::getpid());
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   std::string Refusal(const std::string& name) const {
     const std::string path = folder_ + "/" + name;
     try {
@@ -32,7 +27,8 @@ class RegularFile : public ::testing::Test {
     return "";
   }
 
-  std::string folder_;
+  const TemporaryFolder temporary_;
+  const std::string folder_ = temporary_.path();
 };
 
 TEST_F(RegularFile, WhatIsNoneIsToldByItsKindAndNotOpened) {

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 #include <netcdf.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <cstring>
@@ -12,6 +11,7 @@
 #include <thread>
 
 #include "auv_common/error.hpp"
+#include "auv_common/testing/temporary_folder.hpp"
 
 namespace stg::dynamics {
 namespace {
@@ -37,13 +37,7 @@ struct Layout {
 
 class GridFile : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = testing::TempDir() + "grid_" + std::to_string(::getpid()) + "_" +
-              testing::UnitTest::GetInstance()->current_test_info()->name();
-    fs::create_directories(folder_);
-    file_ = folder_ + "/grid.nc";
-  }
-  void TearDown() override { fs::remove_all(folder_); }
+  void SetUp() override { file_ = folder_ + "/grid.nc"; }
 
   static void Ok(int status) { ASSERT_EQ(status, NC_NOERR) << nc_strerror(status); }
 
@@ -103,7 +97,9 @@ class GridFile : public ::testing::Test {
     return Refusal();
   }
 
-  std::string folder_, file_;
+  const TemporaryFolder temporary_;
+  const std::string folder_ = temporary_.path();
+  std::string file_;
 };
 
 double Plane(double lat, double lon) { return 10.0 * lat - 20.0 * lon + 2000.0; }

@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "auv_common/error.hpp"
+#include "auv_common/testing/temporary_folder.hpp"
 #include "auv_dynamics/terrain/bathymetry.hpp"
 
 namespace stg::dynamics {
@@ -19,12 +20,9 @@ namespace fs = std::filesystem;
 class Crop : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = testing::TempDir() + "crop_" + std::to_string(::getpid());
-    fs::create_directories(folder_);
     file_ = folder_ + "/grid.nc";
     fs::copy_file(STG_SHIPPED_TERRAIN "/fig6.nc", file_);
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   /// Runs the tool, which writes the file `out` and prints into `result`. True if it succeeded.
   bool Tool(const std::string& out, const std::string& result = "/dev/null") const {
@@ -33,7 +31,9 @@ class Crop : public ::testing::Test {
     return std::system(command.c_str()) == 0;
   }
 
-  std::string folder_, file_;
+  const TemporaryFolder temporary_;
+  const std::string folder_ = temporary_.path();
+  std::string file_;
 };
 
 TEST_F(Crop, APipeIsNotReplacedAndAFileNotByHalfOfOne) {

@@ -1,7 +1,6 @@
 #include "auv_dynamics/world/sea.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +10,7 @@
 
 #include "auv_common/config/loader.hpp"
 #include "auv_common/error.hpp"
+#include "auv_common/testing/temporary_folder.hpp"
 #include "auv_dynamics/world/current.hpp"
 #include "physics.hpp"
 
@@ -223,8 +223,6 @@ TEST(Sea, TargetsOfEveryMotionKeepTheirDepthAndSpeed) {
 class SeaOverAFile : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = testing::TempDir() + "sea_" + std::to_string(::getpid());
-    std::filesystem::create_directories(folder_);
     std::vector<double> lats, lons;
     std::vector<float> elevation;
     for (int k = 0; k <= 20; ++k) {
@@ -237,10 +235,7 @@ class SeaOverAFile : public ::testing::Test {
     Bathymetry(lats, lons, elevation).Save(folder_ + "/slope.nc", "for a test");
     ::setenv("STG_TERRAINS", ("/no/such:" + folder_).c_str(), 1);
   }
-  void TearDown() override {
-    ::unsetenv("STG_TERRAINS");
-    std::filesystem::remove_all(folder_);
-  }
+  void TearDown() override { ::unsetenv("STG_TERRAINS"); }
   static WorldScenario Slope(double latitude) {
     WorldScenario s = OpenWater(1);
     s.world.sea.terrain = "slope";
@@ -257,7 +252,8 @@ class SeaOverAFile : public ::testing::Test {
     }
     return "accepted";
   }
-  std::string folder_;
+  const TemporaryFolder temporary_;
+  const std::string folder_ = temporary_.path();
 };
 
 TEST_F(SeaOverAFile, TheBottomIsThatOfTheFile) {

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -11,6 +10,7 @@
 #include <sstream>
 
 #include "auv_common/error.hpp"
+#include "auv_common/testing/temporary_folder.hpp"
 
 namespace stg::dynamics {
 namespace {
@@ -21,13 +21,7 @@ constexpr char kRestAt1[] = "0,0,0,0,0,1,0,0,0,0,0,0,0,0,0,0,0,0\n";
 
 class MotionFile : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = testing::TempDir() + "motion_" + std::to_string(::getpid()) + "_" +
-              testing::UnitTest::GetInstance()->current_test_info()->name();
-    std::filesystem::create_directories(folder_);
-    file_ = folder_ + "/motion.csv";
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
+  void SetUp() override { file_ = folder_ + "/motion.csv"; }
 
   void Write(const std::string& text) const { std::ofstream(file_) << text; }
   std::string Refusal(const std::string& text) const {
@@ -60,7 +54,9 @@ class MotionFile : public ::testing::Test {
     return text.str();
   }
 
-  std::string folder_, file_, out_, err_;
+  const TemporaryFolder temporary_;
+  const std::string folder_ = temporary_.path();
+  std::string file_, out_, err_;
 };
 
 TEST_F(MotionFile, CommandsAndTimesPartTheMotions) {

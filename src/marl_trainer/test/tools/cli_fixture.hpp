@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <cstdio>
 #include <cstdlib>
@@ -11,6 +10,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+
+#include "auv_common/testing/temporary_folder.hpp"
 
 /// Runs the programs as a user does.
 namespace stg::env {
@@ -31,13 +32,7 @@ struct Result {
 
 class CommandLine : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = testing::TempDir() + "cli_" + std::to_string(::getpid()) + "_" +
-              testing::UnitTest::GetInstance()->current_test_info()->name();
-    fs::create_directories(folder_);
-    ::setenv("STG_SCENARIOS", STG_SCENARIO_FOLDER, 1);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
+  void SetUp() override { ::setenv("STG_SCENARIOS", STG_SCENARIO_FOLDER, 1); }
 
   Result Run(const std::string& program, const std::string& arguments) const {
     const std::string out = folder_ + "/stdout", err = folder_ + "/stderr";
@@ -55,7 +50,8 @@ class CommandLine : public ::testing::Test {
     return folder_ + "/bad.yaml";
   }
 
-  std::string folder_;
+  const TemporaryFolder temporary_;
+  const std::string folder_ = temporary_.path();
 };
 
 }  // namespace stg::env

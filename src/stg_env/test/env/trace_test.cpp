@@ -1,7 +1,6 @@
 #include "stg_env/env/trace.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -10,6 +9,7 @@
 #include <sstream>
 
 #include "auv_common/error.hpp"
+#include "auv_common/testing/temporary_folder.hpp"
 #include "env/env_fixture.hpp"
 
 namespace stg::env {
@@ -121,9 +121,6 @@ TEST(GoldenTrace, AnEmptyCellIsNotCompared) {
 class BadTrace : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = testing::TempDir() + "trace_" + std::to_string(::getpid()) + "_" +
-              testing::UnitTest::GetInstance()->current_test_info()->name();
-    fs::create_directories(folder_);
     const std::string source = STG_TEST_DATA "/golden/velocity_medium";
     config_ = Read(source + "/config.yaml");
     std::ifstream in(source + "/steps.csv");
@@ -131,7 +128,6 @@ class BadTrace : public ::testing::Test {
     for (int k = 0; k < 9 && std::getline(in, line); ++k) lines_.push_back(line);
     Write();
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   static std::string Read(const std::string& file) {
     std::ostringstream text;
@@ -179,7 +175,9 @@ class BadTrace : public ::testing::Test {
     return cells;
   }
 
-  std::string folder_, config_;
+  const TemporaryFolder temporary_;
+  const std::string folder_ = temporary_.path();
+  std::string config_;
   std::vector<std::string> lines_;
 };
 

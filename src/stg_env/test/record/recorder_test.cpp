@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "auv_common/error.hpp"
+#include "auv_common/testing/temporary_folder.hpp"
 #include "stg_env/env/evaluation.hpp"
 #include "stg_env/record/message.hpp"
 #include "stg_env/record/scene.hpp"
@@ -74,13 +74,6 @@ std::string FileText(const std::string& path) {
 
 class RecorderTest : public testing::Test {
  protected:
-  RecorderTest() {
-    folder_ = testing::TempDir() + "/recorder_test_" +
-              testing::UnitTest::GetInstance()->current_test_info()->name();
-    std::filesystem::remove_all(folder_);
-  }
-  ~RecorderTest() override { std::filesystem::remove_all(folder_); }
-
   static Scenario Short(const std::string& name) {
     return LoadNamedScenario(STG_SCENARIO_FOLDER, name, "combined_stress",
                              {"time.episode_steps=60", "time.tail_steps=20"});
@@ -93,7 +86,8 @@ class RecorderTest : public testing::Test {
     return ReadAll(FileText(folder_ + "/recording.stgv"));
   }
 
-  std::string folder_;
+  const TemporaryFolder temporary_;
+  const std::string folder_ = temporary_.path();
 };
 
 TEST_F(RecorderTest, FliesWhatTheEvaluationFlies) {
