@@ -1,5 +1,7 @@
 #include "stg_env/env/decide.hpp"
 
+#include <set>
+
 #include "acoustic_channel/models/range.hpp"
 #include "auv_common/error.hpp"
 #include "environment.hpp"
@@ -77,6 +79,24 @@ void ReadTruth(agent::Decider* decider, InformationMode mode) {
         "anyway");
   }
   decider->privileged = true;
+}
+
+void RefuseUnreadNumbers(const agent::Decider& decider, const std::vector<std::string>& overrides) {
+  static const std::set<std::string> flat = {
+      "tracking",         "semantic",         "graph",         "order",
+      "distance_scale_m", "lost_scale_steps", "link_available"};
+  // Policies over entities read these, too. All other keys also belong to the reward.
+  static const std::set<std::string> shared = {"links",        "roles",          "error_window",
+                                               "quality_high", "quality_medium", "role_confidence"};
+  if (decider.observes()) return;
+  const std::string section = "observation.";
+  for (const std::string& text : overrides) {
+    if (text.rfind(section, 0) != 0) continue;
+    const std::string name = text.substr(section.size(), text.find('=') - section.size());
+    if (flat.count(name) == 0 && (decider.entities != nullptr || shared.count(name) == 0)) continue;
+    throw UserError("'" + text + "': a policy reads this number of the observation, but '" +
+                    decider.name + "' does not");
+  }
 }
 
 void Decide(const agent::Decider& c, const VectorEnv& env, const float* observations,

@@ -102,7 +102,7 @@ Scenario LoadNamedScenario(const std::string& folder, const std::string& scenari
 
 void RefuseKeysOfTraining(const std::vector<std::string>& overrides, const std::string& program) {
   for (const std::string& text : overrides) {
-    for (const char* keys : {"critic.", "reset.curriculum"}) {
+    for (const char* keys : {"critic.", "reset.curriculum", "control.action_scale"}) {
       if (text.rfind(keys, 0) != 0) continue;
       throw UserError("'" + text + "': only a training reads this key, but " + program +
                       " does not train");

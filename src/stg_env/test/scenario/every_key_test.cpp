@@ -153,7 +153,7 @@ struct Exception {
 const std::vector<Exception> kExceptions = {
     {"name", "It is a label of the results."},
     {"vehicle.profile", "It is a label of the vehicle."},
-    {"control.action_scale", "Only learned policies and their training read it."},
+    {"control.action_scale", "Only a training reads it. A policy file contains its own."},
     {"track.search_cell_m", "Only the searching laws and policies read the search map."},
     {"believed.sensing.detection_probability", "Only the search map reads it."},
     {"task.assignment", "Between walls there is one target, so there is nothing to choose."},

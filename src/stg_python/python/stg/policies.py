@@ -25,9 +25,10 @@ def evaluate(policy, scenario="medium", condition="nominal", overrides=None, epi
     policy: a file or a built-in controller's name. Episode e is drawn from seed + e. The numbers are
     those of the command line `evaluate`. privileged: a built-in controller reads true states.
     """
-    _core.refuse_keys_of_training(override_texts(overrides), "evaluate")
     s = load_scenario(scenario, condition, overrides)
-    return _core.evaluate(str(policy), s, episodes, seed_of(seed), workers, privileged)
+    return _core.evaluate(
+        str(policy), s, episodes, seed_of(seed), workers, privileged, override_texts(overrides)
+    )
 
 
 def _flat(module):

@@ -112,13 +112,16 @@ py::array_t<float> Mean(const Policy& policy, const py::handle& object) {
 
 /// The same as the program `evaluate`: means and standard deviations over the episodes.
 py::dict Evaluate(const std::string& policy, const Scenario& scenario, int episodes,
-                  std::uint64_t seed, int workers, bool privileged) {
+                  std::uint64_t seed, int workers, bool privileged,
+                  const std::vector<std::string>& overrides) {
   if (episodes < 1) throw py::value_error("episodes: must be at least 1");
   if (workers < 1) throw py::value_error("workers: must be at least 1");
   task::MetricSummary summary;
   {
     const WithoutGil release;
     agent::Decider controller = agent::MakeDecider(policy, scenario.model());
+    RefuseKeysOfTraining(overrides, "evaluate");
+    env::RefuseUnreadNumbers(controller, overrides);
     if (privileged) env::ReadTruth(&controller, scenario.mode);
     WorkerPool pool(std::min(workers, episodes));
     env::EvaluationOptions options;
@@ -167,9 +170,9 @@ void BindPolicy(py::module_& module) {
       .def_property_readonly("action_size", &Policy::action_size);
   module.def("evaluate", &Evaluate, py::arg("policy"), py::arg("scenario"),
              py::arg("episodes") = 30, py::arg("seed") = 3000, py::arg("workers") = 1,
-             py::arg("privileged") = false, "The paper's metrics of a policy file or controller.");
-  module.def("refuse_keys_of_training", &RefuseKeysOfTraining, py::arg("overrides"),
-             py::arg("program"), "Raises UserError for an override that only a training reads.");
+             py::arg("privileged") = false, py::arg("overrides") = std::vector<std::string>(),
+             "The paper's metrics of a policy file or controller. Raises UserError for `overrides` "
+             "of the scenario that no flight of it reads.");
   module.def(
       "controllers", [] { return agent::Controllers().Names(); },
       "Names of the built-in controllers.");

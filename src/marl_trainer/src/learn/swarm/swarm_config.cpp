@@ -126,6 +126,9 @@ void SwarmConfig::ValidateOrThrow() const {
   RequireOption(!free_assignment || network == agent::EntityNetwork::kGraph, "free-assignment",
                 std::string("the network '") + agent::EntityNetworkName(network) +
                     "' does not choose a target; --network graph does");
+  RequireOption(without != "edges" || network == agent::EntityNetwork::kGraph, "without",
+                std::string("the network '") + agent::EntityNetworkName(network) +
+                    "' does not read edges; --network graph does");
   RequireOption(least_log_std <= log_std && log_std <= most_log_std, "log-std",
                 "must be between --min-log-std and --max-log-std");
 }

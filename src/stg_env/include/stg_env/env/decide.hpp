@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "stg_agent/decider/decider.hpp"
 #include "stg_env/env/vector_env.hpp"
 
@@ -16,5 +19,9 @@ void Decide(const agent::Decider& decider, const VectorEnv& env, const float* ob
 /// Lets a built-in controller read true states, also in acoustic mode. Throws UserError if this has
 /// no effect, for a policy and in truth mode.
 void ReadTruth(agent::Decider* decider, InformationMode mode);
+
+/// Throws UserError for an override "observation.NAME=value" of numbers that this decider does not
+/// read: a controller reads none, and a policy over entities reads some of them.
+void RefuseUnreadNumbers(const agent::Decider& decider, const std::vector<std::string>& overrides);
 
 }  // namespace stg::env

@@ -50,7 +50,8 @@ Scenario LoadNamedScenario(const std::string& folder, const std::string& scenari
                            const std::vector<std::string>& overrides = {});
 
 /// Throws UserError for an override "key.path=value" of a key that only a training reads: the
-/// curriculum, and the scales of the critic's state.
+/// curriculum, the scales of the critic's state, and the scale of the actions, which a policy file
+/// contains.
 /// @param program for the message
 void RefuseKeysOfTraining(const std::vector<std::string>& overrides, const std::string& program);
 
