@@ -31,7 +31,7 @@ TEST_F(CommandLine, WhatHasNoEffectIsRefusedWithASentence) {
            "only a training reads this key, but evaluate does not train"},
           {STG_EVALUATE, "--policy pursuit --set observation.graph=false",
            "a policy reads this number of the observation, but 'pursuit' does not"},
-          {STG_EVALUATE, "--policy pursuit --set observation.error_window=2",
+          {STG_EVALUATE, "--policy pursuit --set observation.error_scale_m=2",
            "a policy reads this number of the observation, but 'pursuit' does not"},
           {STG_EVALUATE, "--policy idle --set reset.curriculum=true",
            "only a training reads this key, but evaluate does not train"},

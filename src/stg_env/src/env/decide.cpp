@@ -85,9 +85,10 @@ void RefuseUnreadNumbers(const agent::Decider& decider, const std::vector<std::s
   static const std::set<std::string> flat = {
       "tracking",         "semantic",         "graph",         "order",
       "distance_scale_m", "lost_scale_steps", "link_available"};
-  // Policies over entities read these, too. All other keys also belong to the reward.
-  static const std::set<std::string> shared = {"links",        "roles",          "error_window",
-                                               "quality_high", "quality_medium", "role_confidence"};
+  // Policies over entities read these, too. The other keys also belong to reward and metrics.
+  static const std::set<std::string> shared = {"links",          "roles",        "error_scale_m",
+                                               "error_window",   "quality_high", "quality_medium",
+                                               "role_confidence"};
   if (decider.observes()) return;
   const std::string section = "observation.";
   for (const std::string& text : overrides) {
