@@ -52,24 +52,20 @@ bool IsBusy(const std::string& syscall) {
          number != std::to_string(SYS_pselect6);
 }
 
-/// Waits until roslaunch has started all nodes: until it has started none for a second and has only
-/// slept, as it does between two checks of its nodes. A roslaunch that is interrupted while it
-/// starts a node holds the lock of this node. It then waits 20 s for the lock before it ends the
-/// nodes, and some of them stay alive.
+/// Waits until roslaunch has started all nodes: until a second of looks shows no new node and a
+/// roslaunch that only sleeps, as it does between two checks of its nodes. Looks are counted and
+/// not time, because on a busy machine this process may get no processor for more than a second. A
+/// roslaunch that is interrupted while it starts a node holds the lock of this node. It then waits
+/// 20 s for the lock before it ends the nodes, and some of them stay alive.
 void AwaitLaunched(pid_t roslaunch) {
-  using std::chrono::steady_clock;
-  constexpr std::chrono::seconds kQuiet{1}, kMost{30};
-  const auto start = steady_clock::now();
-  auto changed = start;
+  constexpr std::chrono::milliseconds kBetweenLooks{20};
+  constexpr int kQuiet = 50, kMost = 1500;
   std::string children;
-  while (!StoppedBySignal() && steady_clock::now() - changed < kQuiet &&
-         steady_clock::now() - start < kMost) {
+  for (int looks = 0, quiet = 0; !StoppedBySignal() && quiet < kQuiet && looks < kMost; ++looks) {
     const std::string now = OfMainThread(roslaunch, "children");
-    if (now != children || IsBusy(OfMainThread(roslaunch, "syscall"))) {
-      children = now;
-      changed = steady_clock::now();
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    quiet = now != children || IsBusy(OfMainThread(roslaunch, "syscall")) ? 0 : quiet + 1;
+    children = now;
+    std::this_thread::sleep_for(kBetweenLooks);
   }
 }
 
