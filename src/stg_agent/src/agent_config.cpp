@@ -152,13 +152,24 @@ void OwnAcrossSections(const dynamics::WorldConfig* world, const AgentConfig* ag
   }
 }
 
+void DescribeBelieved(const AgentConfig* agent, config::Differences* differences,
+                      config::Table* t) {
+  t->Differ("believed", KeysOfModel(), differences);
+  // An agent has no other use for the chance of a detection than what a search finds nothing in.
+  t->Own("believed.sensing.detection_probability",
+         {"search", {"with a map"}, "track.search_cell_m", [agent] {
+            const bool map = agent->track.search_cell_m > 0.0;
+            return std::vector<std::string>{map ? "with a map" : "without a map"};
+          }});
+}
+
 void Describe(AgentScenario* s, config::Table* t) {
   Describe(&s->run, t);
   Describe(&s->world, t);
   Describe(&s->channel, t);
   Describe(&s->agent, t);
   OwnAcrossSections(&s->world, &s->agent, t);
-  t->Differ("believed", KeysOfModel(), &s->agent_model);
+  DescribeBelieved(&s->agent, &s->agent_model, t);
 }
 
 std::optional<config::Violation> FindConflict(const AgentScenario& s) {

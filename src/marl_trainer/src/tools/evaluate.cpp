@@ -171,7 +171,7 @@ int main(int argc, char** argv) {
     stg::env::RefuseKeysOf(variant, stg::env::VariantKeys::kWithoutReward, overrides);
     const stg::Scenario s = stg::env::EvaluationScenario(given, variant);
     stg::agent::Decider controller = stg::agent::MakeDecider(policy, s.model());
-    stg::env::RefuseUnreadNumbers(controller, overrides);
+    stg::env::RefuseUnread(controller, overrides);
     if (privileged) stg::env::ReadTruth(&controller, s.mode);
     CsvOutput table(csv);
     stg::WorkerPool pool(std::min(workers, episodes));

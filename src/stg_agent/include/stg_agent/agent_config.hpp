@@ -99,6 +99,10 @@ void Describe(AgentConfig* c, config::Table* t);
 void OwnAcrossSections(const dynamics::WorldConfig* world, const AgentConfig* agent,
                        config::Table* t);
 
+/// Adds the section `believed`: what an agent's model has instead of the true values. All other
+/// sections must be in the table.
+void DescribeBelieved(const AgentConfig* agent, config::Differences* differences, config::Table* t);
+
 /// Keys for which agents may have another value than the true one: dynamics::KeysOnBoard, and the
 /// keys of their link estimate.
 const std::vector<std::string>& KeysOfModel();

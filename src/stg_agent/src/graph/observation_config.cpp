@@ -1,5 +1,6 @@
 #include "stg_agent/graph/observation_config.hpp"
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -58,6 +59,30 @@ void Describe(ObservationConfig* c, config::Table* t) {
     t->Own(std::string("observation.") + key, tracking);
   }
   t->Moved("observation.link_radius_m", "channel.range_m");
+}
+
+ObservationReader ReaderOf(const std::string& key) {
+  using R = ObservationReader;
+  static const std::map<std::string, R> readers = {
+      {"observation.tracking", R::kVectorPolicy},
+      {"observation.semantic", R::kVectorPolicy},
+      {"observation.graph", R::kVectorPolicy},
+      {"observation.links", R::kPolicy},
+      {"observation.roles", R::kPolicy},
+      {"observation.order", R::kVectorPolicy},
+      {"observation.release_bookkeeping", R::kTask},
+      {"observation.distance_scale_m", R::kVectorPolicy},
+      {"observation.error_scale_m", R::kPolicy},
+      {"observation.progress_scale_m", R::kTask},
+      {"observation.closing_scale_mps", R::kTask},
+      {"observation.error_window", R::kPolicy},
+      {"observation.lost_scale_steps", R::kVectorPolicy},
+      {"observation.near_range_m", R::kTask},
+      {"observation.quality_high", R::kPolicy},
+      {"observation.quality_medium", R::kPolicy},
+      {"observation.link_available", R::kVectorPolicy},
+      {"observation.role_confidence", R::kPolicy}};
+  return readers.at(key);
 }
 
 }  // namespace stg::agent

@@ -12,6 +12,14 @@
 namespace stg::agent {
 namespace {
 
+TEST(ObservationConfig, SaysOfEachKeyWhatReadsIt) {
+  ObservationConfig c;
+  config::Table table;
+  Describe(&c, &table);
+  for (const config::Field& field : table.fields()) EXPECT_NO_THROW(ReaderOf(field.path));
+  EXPECT_THROW(ReaderOf("observation.grpah"), std::out_of_range);
+}
+
 TEST(ObservationSpec, BlocksFollowEachOtherWithoutAGap) {
   for (int options = 0; options < 8; ++options) {
     ObservationConfig c;

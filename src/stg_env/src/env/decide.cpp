@@ -1,12 +1,11 @@
 #include "stg_env/env/decide.hpp"
 
-#include <set>
-
 #include "acoustic_channel/models/range.hpp"
 #include "auv_common/error.hpp"
 #include "environment.hpp"
 #include "sources/acoustic_source.hpp"
 #include "stg_agent/agent/agent_view.hpp"
+#include "stg_agent/graph/observation_config.hpp"
 
 namespace stg::env {
 namespace {
@@ -81,20 +80,16 @@ void ReadTruth(agent::Decider* decider, InformationMode mode) {
   decider->privileged = true;
 }
 
-void RefuseUnreadNumbers(const agent::Decider& decider, const std::vector<std::string>& overrides) {
-  static const std::set<std::string> flat = {
-      "tracking",         "semantic",         "graph",         "order",
-      "distance_scale_m", "lost_scale_steps", "link_available"};
-  // Policies over entities read these, too. The other keys also belong to reward and metrics.
-  static const std::set<std::string> shared = {"links",          "roles",        "error_scale_m",
-                                               "error_window",   "quality_high", "quality_medium",
-                                               "role_confidence"};
-  if (decider.observes()) return;
-  const std::string section = "observation.";
+void RefuseUnread(const agent::Decider& decider, const std::vector<std::string>& overrides) {
   for (const std::string& text : overrides) {
-    if (text.rfind(section, 0) != 0) continue;
-    const std::string name = text.substr(section.size(), text.find('=') - section.size());
-    if (flat.count(name) == 0 && (decider.entities != nullptr || shared.count(name) == 0)) continue;
+    if (text.rfind("believed.sea.bottom_m=", 0) == 0 && decider.entities == nullptr) {
+      throw UserError("'" + text + "': only a policy over entities reads this, and '" +
+                      decider.name + "' is none");
+    }
+    if (decider.observes() || text.rfind("observation.", 0) != 0) continue;
+    const agent::ObservationReader reader = agent::ReaderOf(text.substr(0, text.find('=')));
+    if (reader == agent::ObservationReader::kTask) continue;
+    if (reader == agent::ObservationReader::kPolicy && decider.entities != nullptr) continue;
     throw UserError("'" + text + "': a policy reads this number of the observation, but '" +
                     decider.name + "' does not");
   }

@@ -67,7 +67,18 @@ void Describe(Scenario* s, config::Table* t) {
               return std::vector<std::string>{s->world.sea.open ? "open water" : "walls"};
             }});
   }
-  t->Differ("believed", agent::KeysOfModel(), &s->agent_model);
+  t->Own("reward.terms.obstacle",
+         {"sea",
+          {"obstacles"},
+          "sea.spheres",
+          [s] {
+            const dynamics::SeaConfig& sea = s->world.sea;
+            const bool empty = sea.spheres.empty() && sea.cylinders.empty();
+            return std::vector<std::string>{empty ? "no obstacles" : "obstacles"};
+          },
+          {"sea.cylinders"},
+          true});
+  agent::DescribeBelieved(&s->agent, &s->agent_model, t);
 }
 
 std::optional<config::Violation> FindConflict(const Scenario& s) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "auv_common/config/field.hpp"
 
 namespace stg::agent {
@@ -34,5 +36,16 @@ struct ObservationConfig {
 
 /// Keys, units and ranges of the section.
 void Describe(ObservationConfig* c, config::Table* t);
+
+/// What reads a key of the section while a swarm flies. A run of nodes publishes the observation
+/// (AgentStep, TaskState) whatever decides, so that there each key has an effect.
+enum class ObservationReader {
+  kVectorPolicy,  ///< only a policy whose input is the vector of the observation
+  kPolicy,        ///< any policy: one over entities, too
+  kTask           ///< reward or metrics, whatever decides
+};
+
+/// @param key full path, such as "observation.graph" Throws std::out_of_range for any other.
+ObservationReader ReaderOf(const std::string& key);
 
 }  // namespace stg::agent

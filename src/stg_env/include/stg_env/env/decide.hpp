@@ -20,8 +20,9 @@ void Decide(const agent::Decider& decider, const VectorEnv& env, const float* ob
 /// no effect, for a policy and in truth mode.
 void ReadTruth(agent::Decider* decider, InformationMode mode);
 
-/// Throws UserError for an override "observation.NAME=value" of numbers that this decider does not
-/// read: a controller reads none, and a policy over entities reads some of them.
-void RefuseUnreadNumbers(const agent::Decider& decider, const std::vector<std::string>& overrides);
+/// Throws UserError for an override "KEY=value" that has no effect with this decider: of the
+/// numbers of the observation (agent::ReaderOf) a controller reads none and a policy over entities
+/// some; of the bottom's depth only the latter has a belief.
+void RefuseUnread(const agent::Decider& decider, const std::vector<std::string>& overrides);
 
 }  // namespace stg::env
