@@ -105,6 +105,8 @@ class Agents(unittest.TestCase):
     def test_wrong_input_is_refused(self):
         with self.assertRaisesRegex(ValueError, "4 AUVs"):
             stg.Agent(self.scenario, 4)
+        with self.assertRaisesRegex(stg.UserError, "has the mode truth, but an agent has only"):
+            stg.Agent(stg.load_scenario("medium_release"), 0)
         agent = stg.Agent(self.scenario, 0)
         agent.reset()
         with self.assertRaises(ValueError):

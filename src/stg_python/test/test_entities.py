@@ -23,7 +23,7 @@ class Entities(unittest.TestCase):
             self.assertEqual(rows["self"].shape, (1, 26))
             self.assertEqual(rows["search"].shape, (1, 28))
             self.assertEqual(rows["targets"].shape, (1, 40))
-            self.assertEqual(rows["neighbours"].shape, (0, 22))  # the AUV has heard nobody yet
+            self.assertEqual(rows["neighbours"].shape, (0, 22))  # the AUV has heard no other yet
             for _ in range(30):
                 env.step(env.controller_actions("encircle"))
             rows = env.entities(2, 0)

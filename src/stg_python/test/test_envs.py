@@ -95,7 +95,7 @@ class Vector(unittest.TestCase):
             stg.vector_env("medium", 4, overrides=SHORT, curriculum=True)
         with self.assertRaisesRegex(stg.UserError, "True follows it in training, False starts all"):
             stg.vector_env("medium", 4, overrides=on)
-        with self.assertRaisesRegex(stg.UserError, "the option `curriculum` of vector_env"):
+        with self.assertRaisesRegex(stg.UserError, "parallel_env has no training to follow"):
             stg.parallel_env("medium", overrides=on)
         starts = [
             stg.vector_env("medium", 4, overrides=on, curriculum=asked, seed=1).reset()[0]

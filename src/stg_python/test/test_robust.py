@@ -1,4 +1,4 @@
-"""Wrong input is told clearly and changes nothing; memory, threads and processes behave."""
+"""Wrong input is refused clearly and changes nothing; memory, threads and processes behave."""
 
 import multiprocessing
 import subprocess
@@ -184,7 +184,7 @@ class Resources(unittest.TestCase):
 
 class Threads(unittest.TestCase):
     def test_other_threads_run_while_the_environments_step(self):
-        """With a switch interval of a minute nobody gets the GIL who is not given it."""
+        """With a switch interval of a minute a thread gets the GIL only if another one gives it up."""
         env = stg.vector_env("medium", 8000)
         env.reset(seed=0)
         actions = np.zeros((8000, 4, 3), np.float32)

@@ -11,6 +11,7 @@
 
 #include "acoustic_channel/access/medium_access.hpp"
 #include "arrays.hpp"
+#include "auv_common/error.hpp"
 #include "auv_dynamics/control/control.hpp"
 #include "bind.hpp"
 #include "stg_agent/agent/agent.hpp"
@@ -73,6 +74,11 @@ struct BoundAgent {
     if (id < 0 || id >= s.run.agents) {
       throw py::value_error("id: " + std::to_string(id) + ", there are " +
                             std::to_string(s.run.agents) + " AUVs");
+    }
+    if (s.mode == InformationMode::kTruth) {
+      throw UserError("scenario '" + s.run.name +
+                      "' has the mode truth, but an agent has only its own knowledge; set "
+                      "mode=acoustic");
     }
     return s;
   }

@@ -17,9 +17,9 @@ bool FollowsCurriculum(const std::vector<Scenario>& mix, const std::optional<boo
                                  [](const Scenario& s) { return s.world.reset.curriculum; });
   if (there && !given) {
     throw UserError(
-        "reset.curriculum: the scenario has a curriculum, but the option `curriculum` of "
-        "vector_env "
-        "is not given: True follows it in training, False starts all episodes at reset.stage");
+        "reset.curriculum: the scenario has a curriculum. vector_env needs its option "
+        "`curriculum`: True follows it in training, False starts all episodes at reset.stage. "
+        "parallel_env has no training to follow; set reset.curriculum=false");
   }
   if (given.value_or(false) && !there) {
     throw UserError("curriculum: the scenario has none; reset.curriculum=true turns it on");
