@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "auv_common/error.hpp"
 
@@ -14,7 +16,6 @@ using config::NonNegative;
 constexpr int kCourses = 64;
 /// Value of a plan's leg if the course leads to a target that was found.
 constexpr int kCloseIn = -1;
-constexpr double kGiveUpLooks = 6.0;
 
 Encircle CircleOf(const FoundOptions& found) {
   EncircleOptions o;
@@ -128,9 +129,14 @@ bool TooFastToCircle(const AgentModel& model) {
 }
 
 void DescribeFound(FoundOptions* o, config::Table* t) {
-  t->Add("give-up", &o->give_up_s, NonNegative(1e5), "s",
-         "the search begins again after this time without an observation; 0: after six periods of "
-         "the sensor");
+  t->Add(
+      "give-up", &o->give_up_s, NonNegative(1e5), "s",
+      "the search begins again after this time without an observation; 0: after `give-up-looks`");
+  t->Add("give-up-looks", &o->give_up_looks, NonNegative(1e4), "-",
+         "with give-up=0: periods of the sensor after which the search begins again");
+  t->Own("give-up-looks", {"give-up", {"0"}, "give-up", [o] {
+                             return std::vector<std::string>{o->give_up_s > 0.0 ? "a time" : "0"};
+                           }});
   t->Add("fast", &o->fast_mps, NonNegative(100), "m/s", "largest speed over ground");
   t->Add("form", &o->form, {-1.0, 1.0}, "-",
          "after the target is found, 0: the AUV circles it, as encircle; 1: it keeps a place, as "
@@ -140,6 +146,10 @@ void DescribeFound(FoundOptions* o, config::Table* t) {
          "above this; 0: never");
   t->Add("close-reach", &o->close_reach_m, config::Positive(1e5), "m",
          "distance over which the map's mass counts during that approach");
+  t->Add("close-replan", &o->close_replan_s, NonNegative(1e5), "s",
+         "time between two choices of a course during that approach");
+  t->Add("close-keep", &o->close_keep, NonNegative(100), "-",
+         "factor on the worth of the present course during that approach");
   t->Add("team-range", &o->team_range_m, NonNegative(1e5), "m",
          "AUVs farther from the target than this have no place in the ring");
 }
@@ -163,7 +173,7 @@ bool SearchLaw::KeepsPlaces(const AgentModel& model) const {
 
 double SearchLaw::GiveUp_s(const AgentModel& model) const {
   if (found_.give_up_s > 0.0) return found_.give_up_s;
-  return kGiveUpLooks * model.look_period_s();
+  return found_.give_up_looks * model.look_period_s();
 }
 
 void SearchLaw::Act(const ControllerInput<double>& in, double* action) const {
@@ -250,11 +260,11 @@ double CourseToMass(const SearchMap& map, const Vec3<double>& p_WB, double reach
 }
 
 Level<double> SearchLaw::WayToMass(const AgentView& agent, SearchMemory* search) const {
-  constexpr double kReplan_s = 5.0, kKeep = 1.1, kFar_m = 1e4;
+  constexpr double kFar_m = 1e4;
   SearchPlan& plan = search->plan;
-  if (!plan.made || Seconds(search->now() - plan.time) >= kReplan_s) {
+  if (!plan.made || Seconds(search->now() - plan.time) >= found_.close_replan_s) {
     plan.course = CourseToMass(search->map(), agent.knowledge().p_WB, found_.close_reach_m,
-                               plan.course, plan.made ? kKeep : 1.0);
+                               plan.course, plan.made ? found_.close_keep : 1.0);
     plan.time = search->now();
     plan.made = true;
   }

@@ -16,10 +16,10 @@ bool TooFastToCircle(const AgentModel& model);
 
 /// What all of them do after the target is found.
 struct FoundOptions {
-  /// The search begins again after this time without an observation. 0: after six periods of the
-  /// sensor.
+  /// The search begins again after this time without an observation. 0: after `give_up_looks`.
   double give_up_s = 0.0;
-  double fast_mps = 2.3;  ///< largest speed over ground
+  double give_up_looks = 6.0;  ///< periods of the sensor
+  double fast_mps = 2.3;       ///< largest speed over ground
   /// 0: circle the target, as `encircle`; 1: keep a place, as `formation`; below 0: keep a place if
   /// TooFastToCircle.
   double form = -1.0;
@@ -27,6 +27,8 @@ struct FoundOptions {
   /// The AUV then flies to the most probable place of the map, not around the mean. 0: never.
   double certain_m = 150.0;
   double close_reach_m = 500.0;  ///< distance over which the map's mass counts then
+  double close_replan_s = 5.0;   ///< time between two choices of a course then
+  double close_keep = 1.1;       ///< factor on the worth of the present course then
   double team_range_m = 600.0;   ///< AUVs farther from the target have no place in the ring
 };
 
