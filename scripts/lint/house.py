@@ -42,6 +42,8 @@ SHARED_NAMESPACES = {("stg_env", "scenario"): ("stg",)}
 # Parts that build things from a whole scenario, named as by `logical`. All other code takes only the sections
 # that it needs. docs/architecture.md describes each of them.
 COMPOSITION_ROOTS = (
+    "auv_dynamics/world/world",
+    "stg_agent/agent_config",
     "stg_env/scenario/",
     "stg_env/env/environment",
     "stg_env/env/trace",
@@ -268,12 +270,13 @@ def check_registries(source=SOURCE):
 
 
 WHOLE = re.compile(
-    r"[(,]\s*(?:const\s+)?(?:std::vector<)?(?:stg::)?Scenario>?\s*[&*]?\s*\w*\s*(?==|[,)])"
+    r"[(,]\s*(?:const\s+)?(?:std::vector<)?(?:stg::)?(?:\w+::)?(?:World|Agent)?Scenario>?\s*[&*]?\s*\w*\s*(?==|[,)])"
 )
 
 
 def check_scenarios(source=SOURCE):
-    """Finds parameters that are a whole scenario, or several, outside of the composition roots."""
+    """Finds parameters that are a whole scenario, also of the world or of agents, or several, outside of the
+    composition roots."""
     findings, looked_at = [], 0
     for path, lines in _product(source):
         looked_at += 1

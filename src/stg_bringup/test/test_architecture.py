@@ -274,6 +274,7 @@ class Scenarios(Rule):
             "void Fly(int n, stg::Scenario scenario = {});\n",
             "void Fly(\n    const std::vector<Scenario>& mix, int n) {\n",
             "auto f = [](const Scenario&) {};\n",
+            "void Fly(const dynamics::WorldScenario& s, int n);\n",
         ):
             self.assert_found({"stg_env/src/record/a.cpp": text}, "src/stg_env/src/record/a.cpp:1")
             self.assert_clean({"stg_env/src/env/vector_env.cpp": text})
@@ -281,7 +282,7 @@ class Scenarios(Rule):
 
     def test_a_section_a_result_and_a_local_are_none(self):
         for text in (
-            "void Fly(const WorldScenario& s, const RunConfig& run);\n",
+            "void Fly(const WorldConfig& world, const RunConfig& run);\n",
             "const Scenario& s = env.scenario(e);\n",
             "Scenario Load(const std::string& file);\n",
             "return config::Load<Scenario>(file, scope);\n",

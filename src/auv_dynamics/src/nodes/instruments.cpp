@@ -12,20 +12,20 @@ namespace {
 
 constexpr std::uint32_t kInstrumentQueue = 20;
 
-const dynamics::WorldScenario& InOpenWater(const dynamics::WorldScenario& scenario) {
-  if (scenario.world.sea.open) return scenario;
+const dynamics::SeaConfig& Open(const dynamics::SeaConfig& sea, const RunConfig& run) {
+  if (sea.open) return sea;
   throw UserError(
-      "parameter instruments: scenario '" + scenario.run.name +
+      "parameter instruments: scenario '" + run.name +
       "' has no open water (sea.open), so there is no depth and no geographic position");
 }
 
 }  // namespace
 
-Instruments::Instruments(const dynamics::WorldScenario& scenario)
-    : period_s_(Seconds(InOpenWater(scenario).run.decision_period())),
-      datum_(scenario.world.sea.latitude_deg, scenario.world.sea.longitude_deg),
-      auvs_(static_cast<std::size_t>(scenario.run.agents)) {
-  for (int i = 0; i < scenario.run.agents; ++i) Advertise(i);
+Instruments::Instruments(const RunConfig& run, const dynamics::SeaConfig& sea)
+    : period_s_(Seconds(run.decision_period())),
+      datum_(Open(sea, run).latitude_deg, sea.longitude_deg),
+      auvs_(static_cast<std::size_t>(run.agents)) {
+  for (int i = 0; i < run.agents; ++i) Advertise(i);
 }
 
 void Instruments::Advertise(int i) {

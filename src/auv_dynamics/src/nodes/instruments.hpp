@@ -35,7 +35,7 @@ class Instruments {
 
   /// Throws UserError for a scenario without open water, because there is neither depth nor
   /// latitude.
-  explicit Instruments(const dynamics::WorldScenario& scenario);
+  Instruments(const RunConfig& run, const dynamics::SeaConfig& sea);
 
   /// @param now clock time of the decision; `first` decision of an episode: no motion before it
   void Publish(const dynamics::World& world, TimeNs now, bool first);

@@ -14,26 +14,25 @@ constexpr std::uint32_t kCommandQueue = 20;
 
 }  // namespace
 
-VehicleCommands::VehicleCommands(const dynamics::WorldScenario& scenario,
+VehicleCommands::VehicleCommands(const RunConfig& run, const dynamics::ControlConfig& control,
+                                 const dynamics::VehicleConfig& vehicle,
+                                 const dynamics::VehicleConfig& believed,
                                  const dynamics::World& world, bool onboard, Hear hear)
     : hear_(std::move(hear)),
-      vehicle_(scenario.world.vehicle),
+      vehicle_(vehicle),
       row_(world.command_size()),
-      steered_(dynamics::Helm::Steers(scenario.world.vehicle)),
-      helm_(steered_ && onboard ? std::make_unique<dynamics::Helm>(
-                                      scenario.world.vehicle, scenario.believed().vehicle,
-                                      scenario.world.control.autopilot, scenario.run)
-                                : nullptr),
-      parts_(steered_ && !onboard
-                 ? scenario.run.time.decision_steps / scenario.world.control.autopilot.period_steps
-                 : 1),
-      refused_(static_cast<std::size_t>(scenario.run.agents)),
+      steered_(dynamics::Helm::Steers(vehicle)),
+      helm_(steered_ && onboard
+                ? std::make_unique<dynamics::Helm>(vehicle, believed, control.autopilot, run)
+                : nullptr),
+      parts_(steered_ && !onboard ? run.time.decision_steps / control.autopilot.period_steps : 1),
+      refused_(static_cast<std::size_t>(run.agents)),
       wrenches_(steered_ ? 0 : refused_.size()),
       wrenches_of_lanes_(wrenches_.size()),
       values_(steered_ && !onboard ? refused_.size() * row_ : 0),
       values_of_lanes_(values_.size(), Pack(0.0)),
       v_des_W_(helm_ != nullptr ? refused_.size() : 0) {
-  for (int i = 0; i < scenario.run.agents; ++i) actuators_.push_back(world.model(i).actuators());
+  for (int i = 0; i < run.agents; ++i) actuators_.push_back(world.model(i).actuators());
 }
 
 template <class Message>

@@ -27,9 +27,12 @@ class VehicleCommands {
   /// called for well-formed commands.
   using Hear = std::function<StepBarrier::Word(int auv, TimeNs stamp)>;
 
+  /// @param control of the autopilots
+  /// @param believed the vehicles as their autopilots assume them
   /// @param onboard the autopilots run here, with one command per decision
-  VehicleCommands(const dynamics::WorldScenario& scenario, const dynamics::World& world,
-                  bool onboard, Hear hear);
+  VehicleCommands(const RunConfig& run, const dynamics::ControlConfig& control,
+                  const dynamics::VehicleConfig& vehicle, const dynamics::VehicleConfig& believed,
+                  const dynamics::World& world, bool onboard, Hear hear);
   VehicleCommands(const VehicleCommands&) = delete;
   VehicleCommands& operator=(const VehicleCommands&) = delete;
 

@@ -39,7 +39,8 @@ WorldNode::WorldNode()
     : scenario_(LoadScenarioParameters<dynamics::WorldScenario>()),
       world_(scenario_),
       period_(scenario_.run.decision_period()),
-      commands_(scenario_, world_, AutopilotOnBoardParameter(),
+      commands_(scenario_.run, scenario_.world.control, scenario_.world.vehicle,
+                scenario_.believed().vehicle, world_, AutopilotOnBoardParameter(),
                 [this](int i, TimeNs stamp) { return Hear(i, stamp); }),
       pacer_(PacerParameters(period_ / commands_.parts())),
       summary_timeout_s_(NumberParameter("summary_timeout", 10.0, 0.0, 3600.0)),
@@ -48,7 +49,7 @@ WorldNode::WorldNode()
       seed_(static_cast<std::uint64_t>(IntegerParameter("seed", 0, 0, 2'147'483'647))),
       start_(kFirstStamp - period_),
       barrier_(scenario_.run.agents + 1, period_),
-      told_s_(WallSeconds()),
+      reported_s_(WallSeconds()),
       fresh_(static_cast<std::size_t>(scenario_.run.agents)),
       health_("world", "simulation", [this](auto& status) { Report(status); }) {
   // The launch file writes here which of its arguments would have no effect.
@@ -60,9 +61,11 @@ WorldNode::WorldNode()
   const std::string awaited = TextParameter("wait_for_node", "");
   if (!awaited.empty()) awaited_.emplace(awaited);
   ros::NodeHandle node;
-  publisher_ =
-      std::make_unique<WorldPublisher>(scenario_, NumberParameter("display_rate", 20.0, 0.01, 1e6));
-  if (FlagParameter("instruments", false)) instruments_ = std::make_unique<Instruments>(scenario_);
+  publisher_ = std::make_unique<WorldPublisher>(scenario_.run.agents, scenario_.world.target,
+                                                NumberParameter("display_rate", 20.0, 0.01, 1e6));
+  if (FlagParameter("instruments", false)) {
+    instruments_ = std::make_unique<Instruments>(scenario_.run, scenario_.world.sea);
+  }
   commands_.Listen();
   subscribers_.push_back(
       node.subscribe(topics::kChannelDone, kQueue, &WorldNode::OnChannelDone, this, NoDelay()));

@@ -102,7 +102,7 @@ class WorldNode {
   Throttle losses_;        ///< for warnings about nodes that are given up
   std::string warning_;    ///< delayed warning; empty: none
   double warned_s_ = 0.0;  ///< wall time of the delayed warning
-  double told_s_;          ///< wall time of the last message about the delayed start
+  double reported_s_;      ///< wall time of the last message about the delayed start
   bool shown_ = true;      ///< observers have the present step
   EventRate steps_;
   double began_ = 0.0;            ///< WallSeconds() when the run began

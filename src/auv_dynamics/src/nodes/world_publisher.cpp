@@ -29,12 +29,13 @@ geometry_msgs::TransformStamped TransformOf(const std::string& child,
 
 }  // namespace
 
-WorldPublisher::WorldPublisher(const dynamics::WorldScenario& scenario, double display_rate_hz)
-    : scenario_(scenario),
+WorldPublisher::WorldPublisher(int agents, const dynamics::TargetConfig& target,
+                               double display_rate_hz)
+    : target_(target),
       display_period_s_(1.0 / display_rate_hz),
       run_(ros::WallTime::now().toNSec()),
-      auvs_(static_cast<std::size_t>(scenario.run.agents)),
-      targets_(static_cast<std::size_t>(scenario.world.target.count)),
+      auvs_(static_cast<std::size_t>(agents)),
+      targets_(static_cast<std::size_t>(target.count)),
       target_messages_(targets_.size()) {
   Advertise();
   swarm_message_.header.frame_id = frames::kWorld;
@@ -54,7 +55,7 @@ WorldPublisher::WorldPublisher(const dynamics::WorldScenario& scenario, double d
 
 void WorldPublisher::Advertise() {
   ros::NodeHandle node;
-  for (int i = 0; i < scenario_.run.agents; ++i) {
+  for (int i = 0; i < static_cast<int>(auvs_.size()); ++i) {
     AuvTopics& auv = auvs_[static_cast<std::size_t>(i)];
     auv.frame_message.header.frame_id = frames::Body(i);
     auv.frame = node.advertise<auv_msgs::SensorFrame>(topics::AuvTopic(i, topics::kSensorFrame),
@@ -80,7 +81,7 @@ void WorldPublisher::Advertise() {
   clock_ = node.advertise<rosgraph_msgs::Clock>(topics::kClock, kSentQueue, true);
   detections_.Advertise(topics::kSwarmDetections, kSentQueue,
                         [this](auto* message) { return SetNewDetections(message); });
-  for (int k = 0; k < scenario_.world.target.count; ++k) {
+  for (int k = 0; k < target_.count; ++k) {
     nav_msgs::Odometry& message = target_messages_[static_cast<std::size_t>(k)];
     message.header.frame_id = frames::kWorld;
     message.child_frame_id = frames::Target(k);
@@ -199,7 +200,7 @@ void WorldPublisher::SetFrame(const dynamics::World& world, TimeNs start, int i,
   SetDetections(world, start + world.time(0), i, &m);
   if (m.step == 0) {
     m.cue_valid = true;  // it stays in the message for an agent that joins late
-    const dynamics::Cue cue = world.InitialCue(0, i, scenario_.world.target.of(i));
+    const dynamics::Cue cue = world.InitialCue(0, i, target_.of(i));
     SetVector(cue.p_WT, &m.cue_position);
     m.cue_std = cue.std_m;
     m.cues.clear();

@@ -22,7 +22,7 @@ class WorldPublisher {
  public:
   /// @param display_rate_hz largest rate, per second of wall time, of transforms and of detections
   /// for displays, and a tenth of the largest rate of /clock. No step waits for these messages.
-  WorldPublisher(const dynamics::WorldScenario& scenario, double display_rate_hz);
+  WorldPublisher(int agents, const dynamics::TargetConfig& target, double display_rate_hz);
 
   /// Sets the wrenches on the AUVs in the step that ends at the next PublishSensors, which of them
   /// were commanded for it, and whether the acoustic channel had closed it.
@@ -68,7 +68,7 @@ class WorldPublisher {
   void PublishFrames(TimeNs now);
   void SendWorldNed();
 
-  dynamics::WorldScenario scenario_;
+  dynamics::TargetConfig target_;
   double display_period_s_;
   std::uint64_t run_;  ///< id of this run
   ros::WallTime clock_sent_, frames_sent_, detections_sent_;

@@ -34,8 +34,8 @@ void WorldNode::Warn() {
 
 /// Names the nodes whose first answer is missing, before the run begins.
 void WorldNode::TellWhoIsMissing(double now) {
-  if (now - told_s_ < kWaitingNews_s) return;
-  told_s_ = now;
+  if (now - reported_s_ < kWaitingNews_s) return;
+  reported_s_ = now;
   std::string missing;
   for (int party = 0; party < barrier_.parties(); ++party) {
     if (barrier_.answered(party) || !barrier_.present(party)) continue;
