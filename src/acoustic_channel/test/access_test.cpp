@@ -202,7 +202,7 @@ TEST(MediumAccess, OneFromOutsideIsARegisteredName) {
   s.channel.extended.sound_speed_mps = 10.0;
   EXPECT_FALSE(config::FindViolation(s));
   s.channel.periodic.transmit_period_s = 0.01;
-  EXPECT_FALSE(config::FindViolation(s)) << "a key of `periodic` binds nobody else";
+  EXPECT_FALSE(config::FindViolation(s)) << "a key of `periodic` binds no other scheme";
   const auto channel = MakeChannel(s.channel, s.run);
   channel->Reset(1, 0);
   EXPECT_TRUE(channel->Due(1, kDt));

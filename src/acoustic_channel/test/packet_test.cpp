@@ -116,7 +116,7 @@ TEST(Destination, AnAddressedPacketReachesThatNodeOnly) {
     EXPECT_EQ(got[0].receiver, destination);
     EXPECT_EQ(got[0].destination, destination);
     EXPECT_EQ(channel->totals().delivered, 1u);
-    EXPECT_EQ(channel->totals().dropped, 0u) << "who is not meant loses nothing";
+    EXPECT_EQ(channel->totals().dropped, 0u) << "a node that is not meant loses nothing";
   }
 }
 

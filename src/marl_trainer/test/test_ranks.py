@@ -72,7 +72,7 @@ class Ranks(StudyCase):
         for folder in folders:
             deadline = time.monotonic() + 60.0
             while not os.path.exists(os.path.join(folder, "checkpoint_000000000001.ckpt")):
-                self.assertLess(time.monotonic(), deadline, "the training was not told")
+                self.assertLess(time.monotonic(), deadline, "the training was not interrupted")
                 time.sleep(0.05)
         stub_programs.calls(self.folder)
         status, output, calls = self.reproduce("--methods", "stg")

@@ -65,7 +65,7 @@ void Step(benchmark::State& state) {
 // Size of the swarm, and packets received per agent and decision.
 BENCHMARK(Step)->Args({4, 0})->Args({4, 1})->Args({20, 1})->Args({100, 1});
 
-NeighbourState Told(int source, TimeNs t, const Vec3<double>& p) {
+NeighbourState Overheard(int source, TimeNs t, const Vec3<double>& p) {
   NeighbourState s;
   s.source = source;
   s.generation = t;
@@ -78,7 +78,7 @@ NeighbourState Told(int source, TimeNs t, const Vec3<double>& p) {
 
 void Encode(benchmark::State& bench) {
   const PacketCodec codec{AgentModel{}};
-  NeighbourState state = Told(1, 12'300'000'000, {0.1, 0.2, 0.3});
+  NeighbourState state = Overheard(1, 12'300'000'000, {0.1, 0.2, 0.3});
   for (auto _ : bench) {
     benchmark::DoNotOptimize(state);
     Packet packet = codec.Encode(state);
@@ -89,7 +89,7 @@ BENCHMARK(Encode);
 
 void Decode(benchmark::State& bench) {
   const PacketCodec codec{AgentModel{}};
-  Packet packet = codec.Encode(Told(1, 12'300'000'000, {0.1, 0.2, 0.3}));
+  Packet packet = codec.Encode(Overheard(1, 12'300'000'000, {0.1, 0.2, 0.3}));
   for (auto _ : bench) {
     benchmark::DoNotOptimize(packet);
     NeighbourState state = codec.Decode(packet.data(), packet.size(), 12'400'000'000);

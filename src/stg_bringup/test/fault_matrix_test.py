@@ -69,12 +69,12 @@ class FaultMatrix(unittest.TestCase):
 
         def same():
             counted = int(self.world("steps with a deadline miss"))
-            told = sum(s.deadline_misses for s in self.summaries)
+            published = sum(s.deadline_misses for s in self.summaries)
             # The world does not wait for listeners. The metrics may miss whole episodes while it races on.
             episodes = {s.episode for s in self.summaries}
-            untold = 100 * (max(episodes) + 1 - len(episodes))
-            self.counts = f"{counted} counted by the world, {told} told, at most {untold} not"
-            return counted > 0 and told <= counted <= told + untold
+            missed = 100 * (max(episodes) + 1 - len(episodes))
+            self.counts = f"{counted} counted by the world, {published} published, at most {missed} not"
+            return counted > 0 and published <= counted <= published + missed
 
         try:
             wait_for(same, 40.0, "the same number of misses")

@@ -82,7 +82,7 @@ class LateConnections(unittest.TestCase):
         controller = Controller()
         controller.command(1.0)
         controller.move(1.0)
-        first = controller.answer(1.0)  # nobody sends frames yet
+        first = controller.answer(1.0)  # nothing sends frames yet
         frames = rospy.Publisher("/auv_0/sensor_frame", SensorFrame, queue_size=10, latch=True)
         frames.publish(frame_of(0, 1, 1.0))
         wait_for(lambda: frames.get_num_connections() > 0, 20.0, "the controller's frames")
@@ -102,7 +102,7 @@ class LateConnections(unittest.TestCase):
         self.assertTrue(hears("/auv_0/controller", "/auv_0/sensor_frame"))
         frames.unregister()
         wait_for(lambda: not hears("/auv_0/controller", "/auv_0/sensor_frame"), 20.0,
-                 "the controller knows that nobody sends frames")
+                 "the controller knows that nothing sends frames")
         controller.command(11.0)
         rospy.rostime.wallsleep(0.5)
         controller.move(11.0)

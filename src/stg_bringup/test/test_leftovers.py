@@ -19,7 +19,7 @@ SHORT = ("episodes:=1", "real_time_factor:=0", "deadline:=20", "seed:=3", "polic
 LEFT = {
     "/acoustic_channel/overrides": ["channel.extended.loss_probability=0.9"],
     "/acoustic_channel/seed": 5,
-    "/world/wait_for_node": "/nobody",
+    "/world/wait_for_node": "/no_node",
     "/world/start_timeout": 60.0,
     "/metrics/scenario": "hard",
     "/auv_0/overrides": ["sensing.noise_std_m=0.5"],

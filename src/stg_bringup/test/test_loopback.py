@@ -1,4 +1,4 @@
-"""Nobody outside of this machine can reach a run that got no other address."""
+"""No program outside of this machine can reach a run that got no other address."""
 
 import os
 import pathlib

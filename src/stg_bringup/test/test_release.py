@@ -69,33 +69,33 @@ class Wheel(unittest.TestCase):
         cls.addClassCleanup(folder.cleanup)
         cls.folder = pathlib.Path(folder.name)
         engine = pathlib.Path(stg._core.__file__)
-        status, told = run(sys.executable, PACKAGE / "make_wheel.py", f"baseline={engine}",
+        status, stated = run(sys.executable, PACKAGE / "make_wheel.py", f"baseline={engine}",
                            "--out", cls.folder / "dist")  # fmt: skip
-        assert status == 0, told
-        cls.wheel = pathlib.Path(told.strip())
+        assert status == 0, stated
+        cls.wheel = pathlib.Path(stated.strip())
         with zipfile.ZipFile(cls.wheel) as archive:
             archive.extractall(cls.folder / "site")
 
     def test_it_flies_alone_and_alike(self):
         site = self.folder / "site"
-        status, told = run(sys.executable, "-c", FLY.format(wheel=str(site)), PYTHONPATH=str(site),
+        status, stated = run(sys.executable, "-c", FLY.format(wheel=str(site)), PYTHONPATH=str(site),
                            PYTHONDONTWRITEBYTECODE="1")  # fmt: skip
-        self.assertEqual(status, 0, told)
+        self.assertEqual(status, 0, stated)
         env = stg.parallel_env("medium", seed=4)
         env.reset()
         for _ in range(20):
             env.step(env.controller_actions(stg.policy_file("medium")))
-        self.assertEqual(told.strip(), env.state().tobytes().hex())
+        self.assertEqual(stated.strip(), env.state().tobytes().hex())
 
     def test_it_brings_every_library_that_not_everybody_has(self):
         site = self.folder / "site"
         (engine,) = site.glob("stg/_core.*.so")
-        status, told = run("ldd", engine)
-        self.assertEqual(status, 0, told)
-        ours = [line for line in told.splitlines() if "stg_swarm.libs" in line]
-        self.assertTrue(any("libprotobuf" in line for line in ours), told)
-        self.assertNotIn(f"=> {ROOT}/", told)
-        self.assertNotIn("not found", told)
+        status, stated = run("ldd", engine)
+        self.assertEqual(status, 0, stated)
+        ours = [line for line in stated.splitlines() if "stg_swarm.libs" in line]
+        self.assertTrue(any("libprotobuf" in line for line in ours), stated)
+        self.assertNotIn(f"=> {ROOT}/", stated)
+        self.assertNotIn("not found", stated)
 
     def test_its_record_is_true(self):
         site = self.folder / "site"
@@ -107,16 +107,16 @@ class Wheel(unittest.TestCase):
             if name.endswith("RECORD"):
                 continue
             data = (site / name).read_bytes()
-            told = base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b"=").decode()
-            self.assertEqual((digest, int(size)), (f"sha256={told}", len(data)), name)
+            stated = base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b"=").decode()
+            self.assertEqual((digest, int(size)), (f"sha256={stated}", len(data)), name)
 
     def test_an_instruction_set_that_it_lacks_is_refused(self):
         site = self.folder / "site"
         for wanted in ("x86-64-v9", "../x"):
-            status, told = run(sys.executable, "-c", "import stg", PYTHONPATH=str(site),
+            status, stated = run(sys.executable, "-c", "import stg", PYTHONPATH=str(site),
                                STG_INSTRUCTION_SET=wanted, PYTHONDONTWRITEBYTECODE="1")  # fmt: skip
             self.assertEqual(status, 1)
-            self.assertIn("STG_INSTRUCTION_SET", told)
+            self.assertIn("STG_INSTRUCTION_SET", stated)
 
 
 if __name__ == "__main__":

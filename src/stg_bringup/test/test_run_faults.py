@@ -63,7 +63,7 @@ class Refused(WithFolder):
         self.check_refused("is a folder", f"summary_file:={self.folder}")
 
     def test_a_log_folder_that_cannot_be_written(self):
-        # Nobody can write there, not even root.
+        # No user can write there, not even root.
         with unittest.mock.patch.dict(os.environ, ROS_LOG_DIR="/proc/log"):
             self.check_refused("log folder '/proc/log': .*; ROS_LOG_DIR=FOLDER", *QUICK)
 

@@ -79,7 +79,7 @@ class Tools(unittest.TestCase):
     def test_judge_of_joins_refuses_what_it_cannot_fly(self):
         self.check_refused("--agents must be at least 5", "results/joins", "encircle", "--agents", "4")
         self.check_refused("--episodes must be positive", "results/joins", "encircle", "--episodes", "0")
-        self.check_refused("^joins: .*'nobody'", "results/joins", "nobody", "--episodes", "1")
+        self.check_refused("^joins: .*'unknown'", "results/joins", "unknown", "--episodes", "1")
         self.check_refused("only in open water", "results/joins", "pursuit", "--scenario", "medium",
                            "--agents", "5")  # fmt: skip
 

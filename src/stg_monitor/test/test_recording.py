@@ -1,4 +1,4 @@
-"""Recordings: what is written is read again, damage is told in words, folders and bags are read."""
+"""Recordings: what is written is read again, damage is named in words, folders and bags are read."""
 
 import math
 import pathlib

@@ -107,7 +107,7 @@ void ModemChannel::Step(TimeNs t, std::uint32_t /*step*/, const std::vector<Vec3
 
 int ModemChannel::NodeOf(int address) const {
   const auto found = std::find(addresses_.begin(), addresses_.end(), address);
-  return found == addresses_.end() ? kToNobody : static_cast<int>(found - addresses_.begin());
+  return found == addresses_.end() ? kToNone : static_cast<int>(found - addresses_.begin());
 }
 
 void ModemChannel::Deliver(int receiver, TimeNs /*until*/, std::vector<Reception>* out) {
@@ -120,7 +120,7 @@ void ModemChannel::Deliver(int receiver, TimeNs /*until*/, std::vector<Reception
   given_[node].clear();
   for (DriverReception& heard : received) {
     const int source = NodeOf(heard.source);
-    if (source == kToNobody || heard.payload.size() > max_payload_) continue;
+    if (source == kToNone || heard.payload.size() > max_payload_) continue;
     Incoming& in = given_[node].emplace_back();
     in.payload = std::move(heard.payload);
     Reception& r = in.reception;

@@ -231,7 +231,7 @@ void ModemServer::WriteLate(TimeNs now) {
 void ModemServer::Announce(int node, const std::string& notification) {
   const Place& place = places_[static_cast<std::size_t>(node)];
   for (const auto& [guest, bystander] : place.guests) {
-    place.port->WriteToGuest(guest, bystander.Told(notification));
+    place.port->WriteToGuest(guest, bystander.Overheard(notification));
   }
 }
 

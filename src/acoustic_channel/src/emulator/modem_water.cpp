@@ -64,7 +64,7 @@ class ModemWater::Surroundings : public ModemSurroundings {
     const auto& members = water_->members_;
     const auto found = std::find_if(members.begin(), members.end(),
                                     [&](const Member& m) { return m.address == address; });
-    return found == members.end() ? kToNobody : static_cast<int>(found - members.begin());
+    return found == members.end() ? kToNone : static_cast<int>(found - members.begin());
   }
   int AddressOf(int node) const override { return water_->AddressOf(node); }
   const ModemProfile& profile() const override { return water_->network_.profile(node_); }

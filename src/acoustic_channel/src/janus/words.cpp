@@ -90,11 +90,11 @@ Packet JanusModem::PacketOf(const Words& words) const {
     std::copy(bytes->begin(), bytes->end(), baseline.begin());
     auto packet = Decode(baseline);
     if (!packet) throw Refusal{"packet with a wrong checksum or version"};
-    const std::size_t told =
+    const std::size_t stated =
         TellsCargo(*packet) ? DecodeReference(packet->app_type, packet->app_data).cargo_bytes : 0;
     // Two bytes fewer than stated: the checksum is missing.
-    if (packet->app_type == 1 && told == cargo.size() + kChecksumBytes) AddChecksum(&cargo);
-    if (told != cargo.size()) throw Refusal{"packet states another length of cargo"};
+    if (packet->app_type == 1 && stated == cargo.size() + kChecksumBytes) AddChecksum(&cargo);
+    if (stated != cargo.size()) throw Refusal{"packet states another length of cargo"};
     packet->cargo = cargo;
     return *packet;
   }

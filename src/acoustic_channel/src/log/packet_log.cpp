@@ -35,7 +35,7 @@ PacketLog::PacketLog(std::ostream* out, int nodes, std::vector<std::string> name
 }
 
 void PacketLog::OnDiscarded(const PacketInfo& packet, DropReason reason, TimeNs /*t*/) {
-  if (packet.destination == kToNobody) return;
+  if (packet.destination == kToNone) return;
   if (packet.destination != kToAll) {
     Row(packet, nullptr, packet.destination, reason);
     return;

@@ -108,7 +108,7 @@ LinkStatistics PhysicalChannel::Link(int source, int destination, TimeNs now) co
 void PhysicalChannel::Ping(int source, int destination, TimeNs t, TimeNs timeout,
                            std::uint32_t tag) {
   const auto exists = [this](int node) { return node >= 0 && node < nodes(); };
-  const bool to_any = destination == kToNobody || exists(destination);
+  const bool to_any = destination == kToNone || exists(destination);
   if (!exists(source) || !to_any || source == destination) {
     throw UserError("ping: no link from " + std::to_string(source) + " to " +
                     std::to_string(destination));

@@ -95,7 +95,7 @@ bool Network::Impl::Cancel(int node, std::uint32_t tag, TimeNs t) {
 
 void Network::Impl::Discard(int packet, DropReason reason, TimeNs t) {
   const PacketInfo& info = packets_[packet].info;
-  if (info.kind == PacketKind::kData && info.destination != kToNobody) {
+  if (info.kind == PacketKind::kData && info.destination != kToNone) {
     const bool all = info.destination == kToAll;
     for (int j = all ? 0 : info.destination; j < (all ? talkers_ : info.destination + 1); ++j) {
       if (j != info.source) table_.Drop(info.source, j, reason);

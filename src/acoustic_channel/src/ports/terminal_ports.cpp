@@ -80,8 +80,8 @@ class Pty : public BytePort {
   }
 
   void Serve(TimeNs now, const PortListener& listener) override {
-    if (!told_) listener.connected();
-    told_ = true;
+    if (!announced_) listener.connected();
+    announced_ = true;
     BytePort::Serve(now, listener);
   }
 
@@ -91,7 +91,7 @@ class Pty : public BytePort {
  private:
   std::string link_;
   int slave_ = -1;
-  bool linked_ = false, told_ = false;
+  bool linked_ = false, announced_ = false;
 };
 
 class Serial : public BytePort {

@@ -56,7 +56,7 @@ PathSum Propagation::At(const Vec3<double>& p_A_W, const Vec3<double>& p_B_W,
     sum.gain_db = straight_db;
     sum.rician_k = std::min(config_.rician_k, kSteadyRicianK);
   } else {
-    // Powers are relative to the straight path, and delays are after it.
+    // Powers are shares of the straight path's power. Delays count from its arrival.
     double others = 0.0, first_moment = 0.0, second_moment = 0.0;
     const double wave_number = 2.0 * kPi * centre_khz * 1e3 * g.slowness;
     ForEachImage(g.range_m, g.depth_A_m, g.depth_B_m, water_.depth_m, config_.paths,

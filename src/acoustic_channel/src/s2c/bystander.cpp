@@ -19,7 +19,7 @@ std::string Bystander::Read(ByteView bytes) {
   return answers;
 }
 
-std::string Bystander::Told(const std::string& notification) const {
+std::string Bystander::Overheard(const std::string& notification) const {
   return Framed(reader_.mode(), "", notification);
 }
 

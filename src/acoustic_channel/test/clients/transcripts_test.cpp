@@ -91,7 +91,7 @@ TEST(Transcripts, Evins) {
                              {28.764, 0, "+++AT?T\n"},
                              {30.760, 0, "+++AT*SENDIM,p0,6,255,noack,to all\n"},
                              {33.771, 0, "+++AT!L9\n"},
-                             {35.786, 0, "+++AT*SENDIM,p0,6,77,ack,nobody\n"},
+                             {35.786, 0, "+++AT*SENDIM,p0,6,77,ack,unsent\n"},
                              {49.786, 0, "+++AT*SEND,p0,15,2,a burst of data\n"},
                              {63.789, 0, "+++AT*SENDPBM,p0,5,2,rides\n"},
                              {65.795, 0, "+++AT*SENDIMS,p0,3,2,,now\n"},

@@ -242,7 +242,7 @@ TEST(FleetChannel, WaitsForAVehicleThatIsThereNoLongerThanItsPatience) {
   EXPECT_EQ(channel.closed(), kEpoch + 900 * kFleetMs) << "patience and lag behind the clock";
   channel.Run(kEpoch + 6000 * kFleetMs);
   channel.Run(kEpoch + 6000 * kFleetMs);
-  EXPECT_EQ(channel.closed(), kEpoch + 5900 * kFleetMs) << "nobody waits for the silent one";
+  EXPECT_EQ(channel.closed(), kEpoch + 5900 * kFleetMs) << "no vehicle waits for the silent one";
 }
 
 TEST(FleetChannel, APacketThatNoModemTakesIsRefusedAndTheRestGoesOn) {
@@ -251,10 +251,10 @@ TEST(FleetChannel, APacketThatNoModemTakesIsRefusedAndTheRestGoesOn) {
   const std::string endless(100'000, 'x');
   EXPECT_THROW(channel.Offer(Saying(0, 1, kEpoch, endless)), UserError);
   EXPECT_THROW(channel.Offer(Saying(0, 2, kEpoch, "")), UserError);
-  EXPECT_THROW(channel.Offer(Saying(3, 3, kEpoch, "who?")), UserError);
-  Transmission nobody = Saying(0, 4, kEpoch, "where?");
-  nobody.destination = 3;
-  EXPECT_THROW(channel.Offer(nobody), UserError);
+  EXPECT_THROW(channel.Offer(Saying(3, 3, kEpoch, "where?")), UserError);
+  Transmission lost = Saying(0, 4, kEpoch, "where?");
+  lost.destination = 3;
+  EXPECT_THROW(channel.Offer(lost), UserError);
   Transmission prophecy = Saying(0, 5, kEpoch, "soon");
   prophecy.generation += 1;
   EXPECT_THROW(channel.Offer(prophecy), UserError);

@@ -21,7 +21,7 @@ std::string NamesOf(const std::string& all) {
 struct Cycles : testing::Test {
   Cycles() : bench(2) { bench.StartMicromodems(); }
   std::string Names(int node) { return NamesOf(bench.hosts.all[node]); }
-  bool Told(int node, const std::string& part) {
+  bool Overheard(int node, const std::string& part) {
     return bench.hosts.all[node].find(part) != std::string::npos;
   }
   ModemBench bench;
@@ -37,9 +37,9 @@ TEST_F(Cycles, ACycleAtRateZeroIsToldInTheDocumentedOrder) {
   bench.water->Advance(Ns(30.0));
   EXPECT_EQ(Names(0), "CYC TXP TXF XST DRQ TXD TXP TXF XST RXP ACK CST");
   EXPECT_EQ(Names(1), "RXP CYC CST RXP RXD CST TXP TXF");
-  EXPECT_TRUE(Told(1, Seal("CACYC,0,1,2,0,1,1")));
-  EXPECT_TRUE(Told(1, Seal("CARXD,1,2,1,1,48656C6C6F")));
-  EXPECT_TRUE(Told(0, Seal("CAACK,2,1,1,1")));
+  EXPECT_TRUE(Overheard(1, Seal("CACYC,0,1,2,0,1,1")));
+  EXPECT_TRUE(Overheard(1, Seal("CARXD,1,2,1,1,48656C6C6F")));
+  EXPECT_TRUE(Overheard(0, Seal("CAACK,2,1,1,1")));
   // The start of the cycle ends at 10.9. The frame leaves at 11 and takes 3.2 s. The answer comes 1
   // + .05 + .9 + 1 s later.
   EXPECT_NEAR(bench.When(1, Seal("CARXD,1,2,1,1,48656C6C6F")), 15.2, 1e-9);
@@ -57,9 +57,9 @@ TEST_F(Cycles, APskCycleAsksForEveryFrame) {
   bench.water->Advance(Ns(30.0));
   EXPECT_EQ(Names(0), "CYC DRQ TXD DRQ TXD DRQ TXD TXP TXF XST RXP ACK ACK CST");
   EXPECT_EQ(Names(1), "RXP CYC RXD RXD RXD CST TXP TXF");
-  EXPECT_TRUE(
-      Told(1, Seal("CARXD,1,2,1,1,AA") + Seal("CARXD,1,2,0,2,BBBB") + Seal("CARXD,1,2,1,3,CC")));
-  EXPECT_TRUE(Told(0, Seal("CAACK,2,1,1,1") + Seal("CAACK,2,1,3,1")));
+  EXPECT_TRUE(Overheard(
+      1, Seal("CARXD,1,2,1,1,AA") + Seal("CARXD,1,2,0,2,BBBB") + Seal("CARXD,1,2,1,3,CC")));
+  EXPECT_TRUE(Overheard(0, Seal("CAACK,2,1,1,1") + Seal("CAACK,2,1,3,1")));
   // There are three frames of 64 bytes, even if they hold less.
   EXPECT_NEAR(bench.When(1, Seal("CARXD,1,2,1,1,AA")), 14.07, 1e-9);
 }
@@ -69,7 +69,7 @@ TEST_F(Cycles, AnEmptyFrameEndsTheFrames) {
   bench.Ask(0, 10.0, "$CCTXD,1,0,0," + std::string(512, 'A') + "\r\n");
   bench.Ask(0, 10.0, "$CCTXD,1,0,0,\r\n");
   bench.water->Advance(Ns(30.0));
-  EXPECT_TRUE(Told(1, Seal("CARXD,1,0,0,1," + std::string(512, 'A'))));
+  EXPECT_TRUE(Overheard(1, Seal("CARXD,1,0,0,1," + std::string(512, 'A'))));
   EXPECT_EQ(Names(1), "RXP CYC RXD CST");
   EXPECT_NEAR(bench.log.sent.at(0).transmit_end * 1e-9, 10.375, 1e-9);  // one frame of eight
 }
@@ -81,7 +81,7 @@ TEST_F(Cycles, APolledModemsHostIsAskedForData) {
   EXPECT_EQ(Names(1), "RXP CYC CST DRQ");
   bench.Ask(1, 12.0, "$CCTXD,2,1,0,0102\r\n");
   bench.water->Advance(Ns(20.0));
-  EXPECT_TRUE(Told(0, Seal("CARXD,2,1,0,1,0102")));
+  EXPECT_TRUE(Overheard(0, Seal("CARXD,2,1,0,1,0102")));
   EXPECT_EQ(Names(0), "CYC TXP TXF XST RXP CYC RXD CST");
 }
 
@@ -90,7 +90,7 @@ TEST_F(Cycles, APingMeasuresTheOneWayTime) {
   bench.water->Advance(Ns(20.0));
   EXPECT_EQ(Names(0), "MPC TXP TXF RXP MPR CST");
   EXPECT_EQ(Names(1), "RXP MPA CST TXP TXF");
-  EXPECT_TRUE(Told(1, Seal("CAMPA,1,2")));
+  EXPECT_TRUE(Overheard(1, Seal("CAMPA,1,2")));
   EXPECT_NEAR(bench.When(0, Seal("CAMPR,2,1,1.0000")), 13.85, 1e-9);
 }
 
@@ -107,12 +107,12 @@ TEST_F(Cycles, SynchronousPacketsLeaveAtFullSeconds) {
   ASSERT_EQ(bench.log.sent.size(), 1u);
   EXPECT_NEAR(bench.log.sent[0].transmit * 1e-9, 11.0, 1e-6);
   // The time is set by command, the tick comes from outside.
-  EXPECT_TRUE(Told(1, Seal("CATOA,221331.4000,14")));
+  EXPECT_TRUE(Overheard(1, Seal("CATOA,221331.4000,14")));
   EXPECT_EQ(Names(1).substr(Names(1).find("RXP")), "RXP MUA TOA CST");
   // A ping follows. Its answer comes after the turnaround, as always.
   bench.Ask(0, 20.5, "$CCMPC,1,2\r\n");
   bench.water->Advance(Ns(30.0));
-  EXPECT_TRUE(Told(0, Seal("CAMPR,2,1,0.4000")));
+  EXPECT_TRUE(Overheard(0, Seal("CAMPR,2,1,0.4000")));
 }
 
 TEST_F(Cycles, WithoutAnAnswerAPingIsSilentAndTheModemFree) {
@@ -135,23 +135,23 @@ TEST_F(Cycles, FlexibleDataNeedsNoCycle) {
   EXPECT_EQ(bench.Ask(0, 10.0, "$CCTDP,2,1,1,0,48690A\r\n"),
             Seal("CATDP,0,1,2,1,1,0") + Seal("CATXP,3"));
   bench.water->Advance(Ns(20.0));
-  EXPECT_TRUE(Told(1, Seal("CARDP,1,2,1,1,0,,1;3;48690A")));
+  EXPECT_TRUE(Overheard(1, Seal("CARDP,1,2,1,1,0,,1;3;48690A")));
   EXPECT_EQ(Names(1), "RXP RDP CST TXP TXF");
-  EXPECT_TRUE(Told(0, Seal("CAACK,2,1,1,1")));
+  EXPECT_TRUE(Overheard(0, Seal("CAACK,2,1,1,1")));
 }
 
 TEST_F(Cycles, FlexibleDataIsTextInBase64IfTheHostWantsIt) {
   bench.Ask(1, 5.0, "$CCCFG,recv.base64data,1\r\n");
   bench.Ask(0, 10.0, "$CCTDP,2,1,0,0,48690A00\r\n");
   bench.water->Advance(Ns(20.0));
-  EXPECT_TRUE(Told(1, Seal("CARDP,1,2,1,0,0,,1;4;SGkKAA==")));
+  EXPECT_TRUE(Overheard(1, Seal("CARDP,1,2,1,0,0,,1;4;SGkKAA==")));
 }
 
 TEST_F(Cycles, TextPassesAsText) {
   bench.Ask(0, 10.0, "$CCCYC,0,1,0,1,0,1\r\n");
   bench.Ask(0, 10.0, "$CCTXA,1,0,0,hello, world\r\n");
   bench.water->Advance(Ns(20.0));
-  EXPECT_TRUE(Told(1, Seal("CARXA,1,0,0,1,hello, world")));
+  EXPECT_TRUE(Overheard(1, Seal("CARXA,1,0,0,1,hello, world")));
 }
 
 TEST_F(Cycles, AFrameThatIsLostHasABadChecksum) {
@@ -163,9 +163,9 @@ TEST_F(Cycles, AFrameThatIsLostHasABadChecksum) {
   // The cycle comes first, because the header is intact. Error 3 is the one of the published
   // example.
   EXPECT_EQ(Names(1), "RXP CYC MSG CST");
-  EXPECT_TRUE(Told(1, Seal("CAMSG,BAD_CRC,1")));
-  EXPECT_TRUE(Told(1, ",5,1,2,3,3,1,1,"));
-  EXPECT_TRUE(Told(1, "$CACST,6,1,"));
+  EXPECT_TRUE(Overheard(1, Seal("CAMSG,BAD_CRC,1")));
+  EXPECT_TRUE(Overheard(1, ",5,1,2,3,3,1,1,"));
+  EXPECT_TRUE(Overheard(1, "$CACST,6,1,"));
 }
 
 TEST_F(Cycles, TheStatisticsOfAReceptionHaveTheirFields) {
@@ -198,8 +198,8 @@ TEST_F(Cycles, ARebootForgetsWhatWasUnderWay) {
   bench.Ask(0, 10.5, "$CCMSC,1,1,0\r\n");
   bench.water->Advance(Ns(12.0));
   EXPECT_EQ(bench.micromodems[0]->state(), State::kIdle);
-  EXPECT_FALSE(Told(0, "$CADRQ"));
-  EXPECT_TRUE(Told(0, Seal("CAREV,221331,INIT,2.0.35490")));
+  EXPECT_FALSE(Overheard(0, "$CADRQ"));
+  EXPECT_TRUE(Overheard(0, Seal("CAREV,221331,INIT,2.0.35490")));
 }
 
 TEST_F(Cycles, ACycleWithoutItsFramesIsGivenUp) {
@@ -209,7 +209,7 @@ TEST_F(Cycles, ACycleWithoutItsFramesIsGivenUp) {
   EXPECT_NE(bench.Ask(1, 12.0, "$CCMPC,2,1\r\n").find("BUSY"), std::string::npos);
   bench.water->Advance(Ns(30.0));
   EXPECT_EQ(bench.micromodems[1]->state(), State::kIdle);
-  EXPECT_TRUE(Told(1, Seal("CAMSG,PACKET_TIMEOUT,0")));
+  EXPECT_TRUE(Overheard(1, Seal("CAMSG,PACKET_TIMEOUT,0")));
 }
 
 TEST_F(Cycles, AnyOrderOfWordsLeavesTheModemIdle) {

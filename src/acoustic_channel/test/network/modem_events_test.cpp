@@ -179,7 +179,7 @@ TEST(ModemEvents, AcknowledgementsAreNoDataOfTheLinks) {
 TEST(ModemEvents, APacketForNobodyIsSentAndNobodyIsGivenIt) {
   ModemBench bench(2);
   Network& network = bench.Start();
-  network.Offer(bench.Packet(0, 1.0, kToNobody, "hello"));
+  network.Offer(bench.Packet(0, 1.0, kToNone, "hello"));
   network.Advance(Ns(5.0));
   EXPECT_EQ(bench.modem_log.sent.size(), 1u);
   EXPECT_TRUE(bench.modem_log.fates.empty());

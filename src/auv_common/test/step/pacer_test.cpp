@@ -7,7 +7,7 @@
 namespace stg {
 namespace {
 
-constexpr double kNobody = std::numeric_limits<double>::infinity();
+constexpr double kNoVehicle = std::numeric_limits<double>::infinity();
 constexpr double kStart_s = 1000.0;  // the value of the clock does not matter
 
 /// The period of a step is 0.1 s, divided by the real time factor.
@@ -123,7 +123,7 @@ TEST(Pacer, WhilePausedNothingIsDue) {
     pacer.Pause();
     EXPECT_TRUE(pacer.paused());
     EXPECT_FALSE(pacer.Due(kStart_s + 50.0));
-    EXPECT_EQ(pacer.WaitTime(kStart_s + 50.0, kNobody), Pacer::kIdleWait_s);
+    EXPECT_EQ(pacer.WaitTime(kStart_s + 50.0, kNoVehicle), Pacer::kIdleWait_s);
     pacer.Resume(kStart_s + 60.0);
     EXPECT_FALSE(pacer.paused());
     EXPECT_TRUE(pacer.Due(kStart_s + 60.0));
@@ -151,13 +151,13 @@ TEST(Pacer, ResumingWhatIsNotPausedRenewsNothing) {
 
 TEST(Pacer, WaitsUntilTheStepIsDueOrSomebodyIsGivenUp) {
   const Pacer pacer = Running(1.0);
-  EXPECT_NEAR(pacer.WaitTime(kStart_s + 0.06, kNobody), 0.04, 1e-9) << "all are in";
+  EXPECT_NEAR(pacer.WaitTime(kStart_s + 0.06, kNoVehicle), 0.04, 1e-9) << "all are in";
   EXPECT_NEAR(pacer.WaitTime(kStart_s + 0.06, kStart_s + 0.07), 0.01, 1e-9);
-  EXPECT_EQ(pacer.WaitTime(kStart_s + 0.2, kNobody), 0.0) << "overdue";
+  EXPECT_EQ(pacer.WaitTime(kStart_s + 0.2, kNoVehicle), 0.0) << "overdue";
   const Pacer slow = Running(0.01);
-  EXPECT_EQ(slow.WaitTime(kStart_s, kNobody), Pacer::kLongestWait_s);
+  EXPECT_EQ(slow.WaitTime(kStart_s, kNoVehicle), Pacer::kLongestWait_s);
   const Pacer lockstep = Running(0.0);
-  EXPECT_EQ(lockstep.WaitTime(kStart_s + 0.1, kNobody), 0.0);
+  EXPECT_EQ(lockstep.WaitTime(kStart_s + 0.1, kNoVehicle), 0.0);
   EXPECT_NEAR(lockstep.WaitTime(kStart_s + 0.4, lockstep.deadline_s()), 0.1, 1e-9);
 }
 

@@ -11,9 +11,10 @@ void Describe(ControlConfig* c, config::Table* t) {
   t->Section("control");
   t->Add("interface", config::Enum(&c->interface, {"velocity3", "tau6"}), config::kNone, "-",
          "action: desired world velocity (3), or body force and moment (6)");
-  t->Add("action_scale", &c->action_scale, config::Within(0.0, 1.0), "-",
-         "the policy's mean action is this value times the tanh of its output; 0.18 in the paper's "
-         "force interface");
+  t->Add(
+      "action_scale", &c->action_scale, config::Within(0.0, 1.0), "-",
+      "training: the policy's mean action is this value times the tanh of its output (0.18 in the "
+      "paper's force interface); a policy file keeps the value of its training");
   t->Add("max_delta", &c->max_delta, config::NonNegative(2), "-",
          "velocity3: largest change of an action per decision; 0: no limit");
   t->Add("smoothing", &c->smoothing, config::Within(0.0, 0.999), "-",

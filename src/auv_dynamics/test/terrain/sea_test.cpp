@@ -17,7 +17,7 @@
 namespace stg::dynamics {
 namespace {
 
-/// Open water for vehicles that do what they are told.
+/// Open water for vehicles that follow each command at once.
 WorldScenario OpenWater(int agents) {
   WorldScenario s = QuietScenario(agents);
   s.world.vehicle.model = "kinematic";

@@ -80,7 +80,7 @@ int AuvPings::AskTarget(int auv, std::uint32_t step, const std::vector<Vec3<doub
   const double share = range / sensing_.range_m;
   const bool answers =
       share <= 1.0 && luck < options_.chance(sensing_.detection_probability, share);
-  return answers ? node : acoustics::kToNobody;
+  return answers ? node : acoustics::kToNone;
 }
 
 void AuvPings::Ask(TimeNs t, std::uint32_t step, const std::vector<Vec3<double>>& p_W,

@@ -49,7 +49,7 @@ class AuvPings : public acoustics::PacketObserver {
   };
   int TargetOf(int auv) const;
   int NextMember(int auv) const;
-  /// Node of a target's transponder, or kToNobody where it does not answer.
+  /// Node of a target's transponder, or kToNone where it does not answer.
   int AskTarget(int auv, std::uint32_t step, const std::vector<Vec3<double>>& p_W);
 
   RunConfig run_;

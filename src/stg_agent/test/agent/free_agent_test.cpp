@@ -191,7 +191,7 @@ TEST(Assign, EveryTargetHasTwoBeforeAnotherHasThree) {
 }
 
 /// One AUV for each target is enough here. The near AUV can leave its target to the second one, so
-/// that nobody waits for the third, which is far away from both.
+/// that neither waits for the third, which is far away from both.
 TEST(Assign, TheWayOfASurplusAuvMattersLittle) {
   AgentModel s = FreeModel(3, 2);
   const std::vector<Vec3<double>> targets{{0.0, 0.0, 0.0}, {0.35, 0.0, 0.0}};

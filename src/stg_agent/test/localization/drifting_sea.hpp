@@ -24,10 +24,10 @@ struct DriftOptions {
   double slot_s = 1.25;
   double loss = 0.0;
   double late = 0.0;          ///< share of ranges that are late
-  bool ranges = true;         ///< false: nobody measures ranges
+  bool ranges = true;         ///< false: no AUV measures ranges
   ClockModel clocks;          ///< clocks of AUVs and beacons; the clock of the craft is right
   double fix_period_s = 0.0;  ///< time between two fixes of AUV 1, which have 3 m; 0: none
-  double shift_m = 0.0;       ///< shift of all true positions, which nobody sees
+  double shift_m = 0.0;       ///< shift of all true positions, which no AUV measures
   double drift_mps = 0.0;     ///< growth of this shift
 };
 
@@ -79,12 +79,12 @@ class DriftingSea {
     std::vector<Vec3<double>> told(n);
     for (std::size_t i = 0; i < n && o_.headings.std_rad > 0.0; ++i) {
       h[i] = o_.headings.std_rad * Normal();
-      told[i] = Told(static_cast<int>(i), 0.0, e, g);
+      told[i] = Overheard(static_cast<int>(i), 0.0, e, g);
     }
     /// The filter takes the way of an AUV since the last packet of which it knows.
     const auto go = [&](int id, double t) {
       if (o_.headings.std_rad <= 0.0 || id >= o_.auvs) return;
-      const Vec3<double> p = Told(id, t, e, g);
+      const Vec3<double> p = Overheard(id, t, e, g);
       filter.Turn(id, p - told[static_cast<std::size_t>(id)]);
       told[static_cast<std::size_t>(id)] = p;
     };
@@ -131,8 +131,8 @@ class DriftingSea {
         z.receiver = receiver;
         z.source = source;
         z.at = now;
-        z.p_receiver = Told(receiver, t, e, g);
-        z.p_source = Told(source, t, e, g);
+        z.p_receiver = Overheard(receiver, t, e, g);
+        z.p_source = Overheard(source, t, e, g);
         const Vec3<double> way = True(receiver, t) - True(source, t);
         z.range_m = (1.0 + kappa) * Norm(way) + noise + (late ? by : 0.0) +
                     z.sound_mps * (ahead_s(receiver, t) - ahead_s(source, t));
@@ -168,8 +168,8 @@ class DriftingSea {
     z.receiver = o_.auvs;
     z.source = source;
     z.at = filter->now();
-    z.p_receiver = Told(z.receiver, t, e, g);
-    z.p_source = Told(source, t, e, g);
+    z.p_receiver = Overheard(z.receiver, t, e, g);
+    z.p_source = Overheard(source, t, e, g);
     z.std_rad = o_.usbl_std_deg * kTurn / 180.0;
     const Vec3<double> way = True(source, t) - True(z.receiver, t);
     z.azimuth_rad = std::atan2(way.y, way.x) + z.std_rad * Normal();
@@ -181,8 +181,8 @@ class DriftingSea {
     DirectionReading z;
     z.source = source;
     z.at = filter->now();
-    z.p_receiver = Told(0, t, e, g);
-    z.p_source = Told(source, t, e, g);
+    z.p_receiver = Overheard(0, t, e, g);
+    z.p_source = Overheard(source, t, e, g);
     z.std_rad = o_.head_std_deg * kTurn / 180.0;
     const Vec3<double> way = True(source, t) - True(0, t);
     const double level = std::hypot(way.x, way.y);
@@ -216,12 +216,12 @@ class DriftingSea {
     return {x[k] + o_.shift_m + o_.drift_mps * t, y[k], -100.0};
   }
 
-  Vec3<double> Told(int id, double t, const std::vector<double>& e,
-                    const std::vector<double>& g) const {
+  Vec3<double> Overheard(int id, double t, const std::vector<double>& e,
+                         const std::vector<double>& g) const {
     const std::vector<double>& error = id < o_.auvs ? e : g;
     const auto k = static_cast<std::size_t>(2 * (id < o_.auvs ? id : id - o_.auvs));
     Vec3<double> p = True(id, t) + Vec3<double>{error[k], error[k + 1], 0.0};
-    // Nobody sees the shift, so it is not in the position that is told.
+    // No AUV measures the shift, so it is not in the position that is sent.
     p.x -= o_.shift_m + o_.drift_mps * t;
     return p;
   }

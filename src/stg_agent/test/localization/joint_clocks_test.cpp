@@ -34,7 +34,7 @@ TEST(JointFilter, ARangeBetweenKnownPlacesReadsTheClock) {
   const double share = 1450.0 / kClockSound_mps;
   ASSERT_TRUE(other.Take(z));
   EXPECT_NEAR(other.last_nis(), kAhead_m * kAhead_m / (share * share * s + 1.0), 1e-6);
-  // A rate grows with the time; the filter is told nothing of places that change.
+  // A rate grows with the time; the filter gets no places that change.
   LocalizationConfig still = c;
   still.reckoning_std_m = 1e-9;
   still.current_std_mps = still.shear_std_mps = 1e-9;

@@ -51,12 +51,12 @@ class Flight {
     const double angle = 1.6 * id + (0.010 + 0.001 * id) * t;
     return {90.0 * std::cos(angle), 90.0 * std::sin(angle), -20.0 - 10.0 * id};
   }
-  Vec3<double> Told(int id, double t) const {
+  Vec3<double> Overheard(int id, double t) const {
     if (id >= model_.run.agents) return True(id, t);
     return True(id, t) + Vec3<double>{-0.3 * t - 0.02 * id * t, 0.1 * t, 0.0};
   }
   Vec3<double> Speed(int id, double t) const {
-    return (Told(id, t + 0.01) - Told(id, t - 0.01)) * 50.0;
+    return (Overheard(id, t + 0.01) - Overheard(id, t - 0.01)) * 50.0;
   }
   /// The packet that AUV 0 hears in the second before t.
   Letter At(int t) const {
@@ -64,7 +64,7 @@ class Flight {
     Letter l;
     l.state.source = source;
     l.state.generation = (t - 1) * kSecond;
-    l.state.p_W = Told(source, t - 1.0);
+    l.state.p_W = Overheard(source, t - 1.0);
     l.state.v_W = Speed(source, t - 1.0);
     l.state.position_std_m = 0.3 * t;
     l.state.adrift = source < model_.run.agents;
@@ -84,7 +84,7 @@ class Flight {
     }
     return l;
   }
-  OwnReckoning Own(int t) const { return {Told(0, t), std::hypot(1.0, 0.2 * t)}; }
+  OwnReckoning Own(int t) const { return {Overheard(0, t), std::hypot(1.0, 0.2 * t)}; }
 
  private:
   AgentModel model_;
@@ -165,7 +165,7 @@ Letter WithFix(const Flight& flight, int t, double rounding_s) {
   l.state.has_fix = true;
   l.state.fix.stamp =
       fixed * kSecond + static_cast<TimeNs>(rounding_s * static_cast<double>(t % 3 - 1) * 1e9);
-  const Vec3<double> error = flight.Told(2, fixed) - flight.True(2, fixed);
+  const Vec3<double> error = flight.Overheard(2, fixed) - flight.True(2, fixed);
   l.state.fix.error_x = error.x - 2.0;
   l.state.fix.error_y = error.y;
   l.state.fix.std_m = 3.0;
@@ -197,7 +197,7 @@ TEST(RangeLocalizer, AFixOfAnotherAuvServesThisOneAndCountsOnce) {
   EXPECT_EQ(once->own().x, often->own().x);
   EXPECT_EQ(once->own().xx, often->own().xx);
   EXPECT_GT(never->own().std_m(), 200.0);
-  // Another AUV told its fix 20 s ago. The fix and the ranges limit the own deviation.
+  // Another AUV sent its fix 20 s ago. The fix and the ranges limit the own deviation.
   EXPECT_LT(once->own().std_m(), 5.0);
   EXPECT_GT(once->own().std_m(), 2.5);
   EXPECT_NEAR(once->own().x, -0.3 * 1230.0, 10.0);

@@ -45,7 +45,8 @@ class TestEnv : public VectorEnv {
 };
 
 /// A random action for every AUV, decision and global reset r = first_env + env + round *
-/// total_envs. It does not depend on who runs the reset. Shape [envs, agents, action_size].
+/// total_envs. It does not depend on which process runs the reset. Shape [envs, agents,
+/// action_size].
 inline std::vector<float> ActionsOf(const TestEnv& env, const VectorEnvOptions& o) {
   const int total = o.total_envs > 0 ? o.total_envs : o.envs;
   std::vector<float> actions;

@@ -16,7 +16,8 @@ namespace {
 /// What one environment gives in each decision: observation, state, rewards and the rest.
 using Story = std::vector<std::vector<float>>;
 
-/// A random action of environment `env` in round k. It does not depend on who runs the environment.
+/// A random action of environment `env` in round k. It does not depend on which worker runs the
+/// environment.
 std::vector<float> ActionOf(const Scenario& s, int env, std::uint64_t round, int step) {
   std::vector<float> a;
   for (int i = 0; i < s.run.agents; ++i) {

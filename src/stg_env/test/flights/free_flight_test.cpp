@@ -83,7 +83,7 @@ TEST(Members, WhoHasLeftIsSilentAndUnpaidAndComesBackKnowingNothing) {
   EXPECT_FALSE(env.agent(0, 1).belief().started);
   Fly(&env, "encircle", 60);
   EXPECT_TRUE(env.agent(0, 0).neighbours().knows(1));
-  EXPECT_TRUE(env.agent(0, 1).belief().started) << "told by the others";
+  EXPECT_TRUE(env.agent(0, 1).belief().started) << "from the others' packets";
 }
 
 TEST(Members, TheMeanRewardIsOfThoseThatAreThere) {

@@ -183,7 +183,7 @@ TEST(LocalizationFlight, WhatDoesNotGoTogetherIsRefusedByName) {
             std::string::npos);
   EXPECT_THROW(Shipped("field", "nominal", {"navigation.dead_reckoning.fixes=reported"}),
                UserError);
-  // Nobody makes use of this station.
+  // No AUV uses this station.
   EXPECT_THROW(Shipped("field", "nominal", {"stations.crafts=[[0,0]]"}), UserError);
 }
 

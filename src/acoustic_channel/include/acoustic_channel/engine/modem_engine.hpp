@@ -46,7 +46,7 @@ class ModemSurroundings {
 
   /// Sets the address of this modem.
   virtual void SetAddress(int address) = 0;
-  /// The node with an address; kToNobody: there is none.
+  /// The node with an address; kToNone: there is none.
   virtual int NodeOf(int address) const = 0;
   virtual int AddressOf(int node) const = 0;
 

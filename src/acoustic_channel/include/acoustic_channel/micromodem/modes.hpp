@@ -24,9 +24,9 @@ class Modes {
   ModemProfile mini_, mini_psk_, lbl_;
 };
 
-/// Whether a packet's profile is PSK; FSK is not, and neither is the profile of no packet (null).
+/// True for a profile with PSK; false for FSK, and for no profile (null).
 bool IsPsk(const ModemProfile* profile);
-/// The rate of a profile; -1: it is not of a Micromodem.
+/// The rate of a Micromodem's profile; -1 for the profile of any other modem.
 int RateOf(const ModemProfile& profile);
 
 }  // namespace stg::acoustics::micromodem

@@ -19,8 +19,8 @@ ByteView ViewOf(const Bytes& bytes) {
   return {bytes.data(), bytes.size()};
 }
 
-inline constexpr int kToAll = -1;     ///< destination of a packet for all receivers
-inline constexpr int kToNobody = -2;  ///< of a packet for a modem outside this water
+inline constexpr int kToAll = -1;   ///< destination of a packet for all receivers
+inline constexpr int kToNone = -2;  ///< of a packet for a modem outside this water
 
 /// Longest payload of a modem without a profile of its own [bytes]: the largest frame set of the
 /// modems in use today (eight frames of 256 bytes).

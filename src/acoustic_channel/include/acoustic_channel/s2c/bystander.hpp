@@ -19,7 +19,7 @@ class Bystander {
   /// The bytes after that command, for the modem.
   std::string TakeRest() { return reader_.TakeRest(); }
   /// A notification in the form of this connection.
-  std::string Told(const std::string& notification) const;
+  std::string Overheard(const std::string& notification) const;
 
  private:
   Reader reader_;

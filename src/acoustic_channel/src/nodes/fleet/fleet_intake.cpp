@@ -108,7 +108,7 @@ void FleetNode::Offer(int vehicle, const auv_msgs::AcousticPacket& message, Time
   packet.generation = message.generation.isZero() ? stamp : NsOf(message.generation);
   packet.tag = message.sequence;
   packet.payload = acoustics::ViewOf(message.data);
-  if (packet.destination == kNobody) {
+  if (packet.destination == kNoVehicle) {
     return refuse("destination " + std::to_string(message.destination) + " does not exist");
   }
   if (packet.destination == vehicle) return refuse("the destination of the packet is its sender");
@@ -152,8 +152,8 @@ void FleetNode::AskPings() {
   for (const PingDesk::Question& q : pings_.TakeQuestions()) {
     const int source = IndexOf(vehicles_, q.source);
     const int destination = IndexOf(vehicles_, q.destination);
-    if (source == kNobody || destination == kNobody) {
-      const auto missing = source == kNobody ? q.source : q.destination;
+    if (source == kNoVehicle || destination == kNoVehicle) {
+      const auto missing = source == kNoVehicle ? q.source : q.destination;
       pings_.Refuse(q.tag, "there is no vehicle " + std::to_string(missing));
     } else if (source == destination) {
       pings_.Refuse(q.tag, "vehicle " + std::to_string(q.source) + " cannot ping itself");

@@ -107,7 +107,7 @@ int IndexOf(const std::vector<FleetVehicle>& vehicles, long id) {
   for (std::size_t i = 0; i < vehicles.size(); ++i) {
     if (vehicles[i].id == id) return static_cast<int>(i);
   }
-  return kNobody;
+  return kNoVehicle;
 }
 
 }  // namespace stg::nodes

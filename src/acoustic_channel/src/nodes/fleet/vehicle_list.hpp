@@ -20,8 +20,8 @@ struct FleetVehicle {
 /// list, and for two vehicles with the same name, id or odometry topic.
 std::vector<FleetVehicle> VehicleListParameter();
 
-/// The index of the vehicle with this id; kNobody: there is none.
-inline constexpr int kNobody = -2;
+/// The index of the vehicle with this id; kNoVehicle: there is none.
+inline constexpr int kNoVehicle = -2;
 int IndexOf(const std::vector<FleetVehicle>& vehicles, long id);
 
 }  // namespace stg::nodes

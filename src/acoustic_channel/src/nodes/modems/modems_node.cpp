@@ -115,7 +115,7 @@ void ModemsNode::OnPacket(int vehicle, const auv_msgs::AcousticPacket::ConstPtr&
   const TimeNs t = server_.Now();
   acoustics::Transmission packet;
   packet.source = vehicle;
-  packet.destination = acoustics::kToNobody;
+  packet.destination = acoustics::kToNone;
   for (std::size_t i = 0; i < file_.vehicles.size(); ++i) {
     if (file_.vehicles[i].id == message->destination) packet.destination = static_cast<int>(i);
   }
@@ -125,7 +125,7 @@ void ModemsNode::OnPacket(int vehicle, const auv_msgs::AcousticPacket::ConstPtr&
   packet.payload = acoustics::ViewOf(message->data);
   const std::size_t most = server_.water().network().max_payload();
   if (message->data.empty() || message->data.size() > most || packet.destination == vehicle ||
-      packet.destination == acoustics::kToNobody) {
+      packet.destination == acoustics::kToNone) {
     refused_.Add(Refusals::kMalformed);
     return;
   }

@@ -25,11 +25,11 @@ struct RunConfig {
   std::string name = "medium";
   std::uint64_t seed = 0;
   int agents = 4;
-  /// Number of nodes that only answer pings, where `agents` counts the nodes of an acoustic
-  /// network; they are the last nodes. This is not a key of a file.
+  /// Number of nodes that only answer pings. In an acoustic network `agents` counts all nodes, and
+  /// these are the last of them. A file has no key for it.
   int transponders = 0;
-  /// Number of the nodes directly before those whose clocks GPS keeps right. This is not a key
-  /// either.
+  /// Number of nodes whose clocks GPS keeps right. They stand directly before the transponders. A
+  /// file has no key for it.
   int timekeepers = 0;
   TimeConfig time;
 

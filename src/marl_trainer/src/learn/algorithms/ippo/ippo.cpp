@@ -42,13 +42,13 @@ Ippo::Ippo(const IppoConfig& config, const TrainConfig& common, const Problem& p
 
 void Ippo::Begin(const Collection& collection) {
   Collection singles = collection;
-  told_.resize(collection.shards.size());
+  announced_.resize(collection.shards.size());
   for (std::size_t s = 0; s < singles.shards.size(); ++s) {
     Shard& shard = singles.shards[s];
     shard.first_env *= agents_;
     shard.envs *= agents_;
-    told_[s].rewards.resize(static_cast<std::size_t>(shard.envs));
-    told_[s].truncated.resize(static_cast<std::size_t>(shard.envs));
+    announced_[s].rewards.resize(static_cast<std::size_t>(shard.envs));
+    announced_[s].truncated.resize(static_cast<std::size_t>(shard.envs));
   }
   single_.Begin(singles);
 }
@@ -68,7 +68,7 @@ void Ippo::Act(const Decision& decision, const Actions& out) {
 
 void Ippo::Observe(const Transition& t) {
   assert(t.final_observations != nullptr);
-  Told& told = told_[static_cast<std::size_t>(t.shard)];
+  Told& told = announced_[static_cast<std::size_t>(t.shard)];
   for (int row = 0; row < t.envs * agents_; ++row) {
     told.rewards[static_cast<std::size_t>(row)] = t.team_rewards[row / agents_];
     told.truncated[static_cast<std::size_t>(row)] = t.truncated[row / agents_];

@@ -78,7 +78,7 @@ void GraphBatch::UndoMessages(const float* p, const PackedRows& x, Workspace* w,
   const int rows = x.rows(), width = spec_.width;
   const int targets = x.offset(0, rows), neighbours = x.offset(1, rows);
   UndoRelu(w->targets_, &w->d_targets_);
-  UndoDense(p, blocks_.update, w->told_.data(), targets, w->d_targets_.data(), gradient,
+  UndoDense(p, blocks_.update, w->announced_.data(), targets, w->d_targets_.data(), gradient,
             &w->d_told_);
   w->d_from_.assign(Count(neighbours, width), 0.0F);
   w->d_base_.assign(Count(targets, width), 0.0F);

@@ -41,7 +41,7 @@ class Ippo : public Algorithm {
 
   const int agents_;
   Mappo single_;
-  std::vector<Told> told_;  // by shard
+  std::vector<Told> announced_;  // by shard
 };
 
 }  // namespace stg::learn
