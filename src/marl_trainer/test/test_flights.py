@@ -1,5 +1,6 @@
 """Studies of flights: the table follows from the episodes, and a file that is no study is refused."""
 
+import json
 import math
 import os
 import pathlib
@@ -147,6 +148,37 @@ class Flights(unittest.TestCase):
         mean, std = flight_study.flown(cells[0], "band_share")
         self.assertAlmostEqual(mean, 0.5)
         self.assertAlmostEqual(std, math.sqrt(0.02))
+
+    def test_the_trainings_must_be_what_the_study_states(self):
+        everything = {"noise-time": 60.0, "without": "nothing", "validation-interval": 100}
+        for name, options in (
+            ("all_4", everything), ("white_4", {**everything, "noise-time": 0.0, "validation-interval": 2}),
+        ):  # fmt: skip
+            (self.folder / name).mkdir()
+            (self.folder / name / "policy.onnx").write_text("x")
+            (self.folder / name / "config.json").write_text(json.dumps({"seed": 4, **options}))
+        pilots = {
+            name: {"policy": "{policies}/" + name + "_{seed}/policy.onnx", "seeds": [4]} for name in ("all", "white")
+        }
+        section = {**STUDY["sections"][0], "pilots": {"all": ["own"], "white": ["own"]}}
+
+        def plan(**trained):
+            changed = {**STUDY, "compare": "all", "sections": [section],
+                       "pilots": {n: {**p, "trained": trained.get(n, {})} for n, p in pilots.items()}}  # fmt: skip
+            made = flight_study.flight_study_from(changed, "study")
+            return flight_study.plan_flights(made, str(self.folder), str(self.folder), str(self.folder))
+
+        self.assertEqual(len(plan()), 4)  # a study that states nothing compares whatever it likes
+        self.assertEqual(len(plan(white={"noise-time": 0.0})), 4)
+        for trained, what in (
+            ({"white": {"noise-time": 5.0}}, r"white_4/policy.onnx: trained with noise-time=0.0, but the study states 5.0"),
+            ({"all": {"without": "nothing"}}, "white_4.*noise-time=0.0, but .*all_4.* with 60.0; .* no such difference"),
+        ):
+            with self.subTest(trained), self.assertRaisesRegex(flight_study.StudyError, what):
+                plan(**trained)
+        (self.folder / "white_4" / "config.json").unlink()
+        with self.assertRaisesRegex(flight_study.StudyError, "white_4.*config.json is missing"):
+            plan(white={"noise-time": 0.0})
 
     def test_shipped_studies_load_and_their_published_pages_follow_from_their_tables(self):
         published = PACKAGE.parents[1] / "docs" / "results"

@@ -14,6 +14,7 @@ from stg_study.tables import NOTHING, cell, markdown
 PLACE = ("section", "scenario", "condition", "variant")
 KEY = (*PLACE, "pilot", "knows", "seeds", "episodes")
 PAIRED = ("difference", "difference_low", "difference_high")
+TRAINED = "Apart from their seeds, the trainings of these policies differ in these options only, as their files say.\n"
 LEAST_GAP = 0.02  # if truth is worth less than this, no share of it is given
 TITLES = {"scenario": "Scenario", "condition": "Condition", "variant": "Variant", "pilot": "Flown by",
           "knows": "Knows", "seeds": "Seeds", "episodes": "Episodes"}  # fmt: skip
@@ -151,6 +152,20 @@ def section_table(study, rows):
     return markdown(header, lines)
 
 
+def trained_table(study):
+    """The options in which trainings of pilots differ from each other."""
+    lines = [
+        [name, ", ".join(f"`--{option} {cell_of(value)}`" for option, value in pilot.trained.items())]
+        for name, pilot in study.pilots.items() if pilot.trained
+    ]  # fmt: skip
+    return markdown(["Flown by", "Trained with"], lines)
+
+
+def cell_of(value):
+    """An option's value as on a command line."""
+    return str(value).lower() if isinstance(value, bool) else f"{value:g}" if isinstance(value, float) else value
+
+
 def beside_table(study, rows):
     """Compares, for each place, the first pilot of `beside` with the best of the others by the first
     column."""
@@ -211,6 +226,8 @@ def write_page(study, folder):
             if len(episodes) == 1:
                 page.append(f"{episodes.pop()} episodes per row.\n")
             page.append(section_table(study, here))
+    if any(pilot.trained for pilot in study.pilots.values()):
+        page += ["## Trainings\n", TRAINED, trained_table(study)]
     for training in study.trainings:
         path = os.path.join(folder, training, "validation.csv")
         page += [f"## {training.replace('_', ' ').capitalize()}\n", training_table(path)]

@@ -15,6 +15,7 @@ from stg_common.files import FileError
 from stg_study.files import write_atomically
 from stg_study.jobs import Flight, combined
 from stg_study.study import StudyError, build, is_name
+from stg_study.trained import check_trainings
 
 SHIPPED_POLICIES = ("../../../stg_bringup/policies", "../../../../share/stg_bringup/policies")
 
@@ -34,11 +35,13 @@ class Pilot:
 
     In the name of a file, {shipped} is the folder of the shipped policies, {policies} the folder of
     --policies, {scenario} the scenario, and {seed} each of `seeds`. The seeds are those of trainings; the row
-    then has mean and standard deviation over them.
+    then has mean and standard deviation over them. `trained` has the options in which these trainings differ
+    from those of other pilots; the config.json beside each policy must agree (trained.py).
     """
 
     policy: str
     seeds: List[int] = dataclasses.field(default_factory=list)
+    trained: dict = dataclasses.field(default_factory=dict)
 
     def is_file(self):
         """True if it is a policy file."""
@@ -174,7 +177,7 @@ def _policy(pilot, scenario, seed, policies):
 
 def plan_flights(study, work, bin_dir, policies=None):
     """Returns the cells of all tables, in order. policies: the folder of --policies."""
-    cells = []
+    cells, trainings = [], {}
     for number, section in enumerate(study.sections):
         places = itertools.product(section.scenarios, section.conditions, section.variants.items())
         for scenario, condition, (variant, overrides) in places:
@@ -193,9 +196,12 @@ def plan_flights(study, work, bin_dir, policies=None):
                         arguments += ["--privileged"] if study.knows[knows].privileged else []
                         base = os.path.join(work, "flights", slug + ("" if seed is None else f"_{seed}"))
                         policy = _policy(pilot, scenario, seed, policies)
+                        if "{policies}" in pilot.policy:
+                            trainings[name, seed] = policy
                         label = " ".join(filter(None, ("fly", *words[1:])))
                         jobs.append(Flight(label, policy, arguments, episodes, base, bin_dir, pilot.is_file()))
                     cells.append(Cell(section.title, scenario, condition, variant, name, knows, jobs))
+    check_trainings(study, [(name, seed, path) for (name, seed), path in trainings.items()])
     return cells
 
 
