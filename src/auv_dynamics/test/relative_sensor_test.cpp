@@ -173,8 +173,8 @@ TEST_F(RelativeSensorTest, TellsInTheFrameOfItsOwnNavigation) {
     EXPECT_LT(Norm(d.p_WO - nav.p_WB), 1e-12);
     EXPECT_EQ(d.p_WO_std_m, nav.position_std_m);
     // At rest the true attitude is level and east. The stated one differs by the heading's error.
-    const Vec3<double> told = RotationOf(nav.q_WB) * r + nav.p_WB;
-    EXPECT_LT(Norm(d.p_WT - told), 1e-6) << sensor;
+    const Vec3<double> sent = RotationOf(nav.q_WB) * r + nav.p_WB;
+    EXPECT_LT(Norm(d.p_WT - sent), 1e-6) << sensor;
   }
 }
 

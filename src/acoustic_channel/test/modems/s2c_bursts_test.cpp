@@ -152,10 +152,10 @@ TEST_F(Bursts, AnInstantMessageGoesBetweenBursts) {
   bench.Ask(0, 10.1, Burst("last", 2));
   EXPECT_EQ(bench.Ask(0, 10.2, "AT*SENDIM,2,2,ack,hi\n"), "OK\r\n");
   bench.water->Advance(Ns(40.0));
-  const std::string& told = bench.hosts.all[0];
-  EXPECT_NE(told.find("DELIVEREDIM,2"), std::string::npos);
-  EXPECT_LT(told.find("DELIVEREDIM,2"), told.find("DELIVERED,3,2"));
-  EXPECT_EQ(Count(told, "FAILED"), 0u);
+  const std::string& sent = bench.hosts.all[0];
+  EXPECT_NE(sent.find("DELIVEREDIM,2"), std::string::npos);
+  EXPECT_LT(sent.find("DELIVEREDIM,2"), sent.find("DELIVERED,3,2"));
+  EXPECT_EQ(Count(sent, "FAILED"), 0u);
 }
 
 TEST_F(Bursts, TwoThatCallEachOtherAtOnceEndConnected) {

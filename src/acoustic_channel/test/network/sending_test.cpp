@@ -144,11 +144,11 @@ TEST(Network, ResultsDoNotDependOnTheOrderOfCalls) {
 
 TEST(Network, EveryPacketHasOneFate) {
   for (const char* access : {"aloha", "csma"}) {
-    std::map<std::tuple<int, std::uint32_t, int>, int> told;
+    std::map<std::tuple<int, std::uint32_t, int>, int> sent;
     for (const Log::Fate& f : Busy(0, access)) {
-      ++told[{f.packet.source, f.packet.sequence, f.fate.receiver}];
+      ++sent[{f.packet.source, f.packet.sequence, f.fate.receiver}];
     }
-    for (const auto& [packet, times] : told) EXPECT_EQ(times, 1);
+    for (const auto& [packet, times] : sent) EXPECT_EQ(times, 1);
   }
 }
 

@@ -81,8 +81,8 @@ TEST_F(SimulateEnds, WhateverStopsItItKeepsWhatItHas) {
     ASSERT_FALSE(HasFatalFailure());
     ::kill(child_, signal);
     ExpectStopped();
-    const auto told = nlohmann::json::parse(Read(folder_ + "/text"), nullptr, false);
-    EXPECT_EQ(told["finished"], false) << signal;
+    const auto sent = nlohmann::json::parse(Read(folder_ + "/text"), nullptr, false);
+    EXPECT_EQ(sent["finished"], false) << signal;
   }
 }
 

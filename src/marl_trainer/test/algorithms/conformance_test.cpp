@@ -225,9 +225,9 @@ TEST_P(Conformance, TellsTheSizesOfWhatItTrains) {
       {"madqn", {{"values", Numbers(1, 16, 1 + kBins)}}}};
   const nlohmann::json options = {{"bins", kBins}};
   Training training(AnyGame(), GameSetup(name, name == "madqn" ? options : nlohmann::json()));
-  std::map<std::string, std::size_t> told;
-  for (const NetworkSize& size : training.algorithm().Sizes()) told[size.name] = size.parameters;
-  EXPECT_EQ(told, expected.at(name));
+  std::map<std::string, std::size_t> sent;
+  for (const NetworkSize& size : training.algorithm().Sizes()) sent[size.name] = size.parameters;
+  EXPECT_EQ(sent, expected.at(name));
 }
 
 TEST_P(Conformance, PresetsAreValidAndSurviveJson) {

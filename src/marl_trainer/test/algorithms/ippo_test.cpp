@@ -10,9 +10,9 @@ namespace {
 /// Repeats the numbers of environments [envs] for each of their AUVs [envs, agents].
 template <class T>
 std::vector<T> ToEachAuv(const std::vector<T>& of_envs, std::size_t agents) {
-  std::vector<T> told;
-  for (const T& x : of_envs) told.insert(told.end(), agents, x);
-  return told;
+  std::vector<T> sent;
+  for (const T& x : of_envs) sent.insert(sent.end(), agents, x);
+  return sent;
 }
 
 TEST(Ippo, IsMappoOfSwarmsOfOneWithTheTeamsReward) {
@@ -73,12 +73,12 @@ TEST(Ippo, IsMappoOfSwarmsOfOneWithTheTeamsReward) {
       transition.next_observations = next_seen.data();
       transition.final_observations = final_seen.data();
       ippo->Observe(transition);
-      const std::vector<float> told = ToEachAuv(team, kAgents);
-      const std::vector<std::uint8_t> told_truncated = ToEachAuv(truncated, kAgents);
+      const std::vector<float> sent = ToEachAuv(team, kAgents);
+      const std::vector<std::uint8_t> sent_truncated = ToEachAuv(truncated, kAgents);
       transition.envs = kRows;
       transition.states = seen.data();
-      transition.team_rewards = told.data();
-      transition.truncated = told_truncated.data();
+      transition.team_rewards = sent.data();
+      transition.truncated = sent_truncated.data();
       transition.next_states = next_seen.data();
       transition.final_states = final_seen.data();
       mappo->Observe(transition);

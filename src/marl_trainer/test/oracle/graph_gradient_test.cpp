@@ -102,14 +102,14 @@ struct TorchGraph : TorchBlocks<agent::GraphBlocks> {
     const torch::Tensor m = torch::relu(torch::cat(
         {torch::matmul(edges, At(b_.edge_row).t()) + from + base, base + At(b_.edge_nobody).t()},
         1));
-    torch::Tensor told = t;
+    torch::Tensor sent = t;
     if (targets > 0) {
-      told = torch::relu(Dense(torch::cat({t, m.mean(1), std::get<0>(m.max(1))}, 1), b_.update));
+      sent = torch::relu(Dense(torch::cat({t, m.mean(1), std::get<0>(m.max(1))}, 1), b_.update));
     }
     const auto with_nobody = [&](const torch::Tensor& rows, int s) {
       return torch::cat({rows, At(b_.sets[static_cast<std::size_t>(s)].nobody).t()}, 0);
     };
-    const torch::Tensor all_t = with_nobody(told, 0), all_n = with_nobody(n, 1),
+    const torch::Tensor all_t = with_nobody(sent, 0), all_n = with_nobody(n, 1),
                         all_o = with_nobody(o, 2);
     const torch::Tensor quality =
         TensorOf(x.sets[1].rows, {neighbours, spec_.neighbours}).select(1, spec_.quality);
@@ -131,7 +131,7 @@ struct TorchGraph : TorchBlocks<agent::GraphBlocks> {
     const torch::Tensor out = Dense(y, b_.head) + torch::matmul(all_t, At(b_.head_row).t());
     EXPECT_EQ(out.size(1), spec_.outputs);
     EXPECT_EQ(joined.size(1), spec_.joined());
-    EXPECT_EQ(told.size(1), width);
+    EXPECT_EQ(sent.size(1), width);
     return {choices, out};
   }
 

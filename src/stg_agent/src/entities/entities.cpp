@@ -219,8 +219,8 @@ void PutEdge(const EntityInput& in, const Subject& t, const EntityNeighbour& n, 
   Row row(out);
   row.Put(FarScale(d)).Put(BandScale(d, in.model.task.desired_distance_m));
   row.Put(-(q.x * r.x + q.y * r.y) / both).Put((q.x * r.y - q.y * r.x) / both);
-  const int told = in.model.task.free() ? n.report->followed : n.report->target;
-  row.Put(told == t.target ? 1.0 : 0.0);
+  const int followed = in.model.task.free() ? n.report->followed : n.report->target;
+  row.Put(followed == t.target ? 1.0 : 0.0);
   double age = 0.0;
   row.Put(Sighted(in, t, *n.report, &age) ? AgeScale(age) : 1.0F);
   row.Put(0.0);

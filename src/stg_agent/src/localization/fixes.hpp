@@ -27,7 +27,7 @@ class Fixes {
   void Clear() {
     newest_.assign(newest_.size(), kNever);
     count_ = 0;
-    own_ = ToldFix();
+    own_ = SentFix();
   }
 
   /// The own newest fix as a reading. Returns false if it was used already, or if there is none.
@@ -37,14 +37,14 @@ class Fixes {
     if (!way.At(own.fix_stamp, &p)) return false;
     own_ = {own.fix_stamp, p.x - own.p_WF.x, p.y - own.p_WF.y, own.fix_std_m};
     ++count_;
-    return TakeTold(self_, own_, z);
+    return TakeSent(self_, own_, z);
   }
 
   /// The fix in a packet as a reading. Returns false if it was used already.
-  bool TakeTold(int id, const ToldFix& told, FixReading* z) {
-    if (newest(id) != kNever && told.stamp < newest(id) + apart_) return false;
-    newest_[static_cast<std::size_t>(id)] = told.stamp;
-    *z = {id, told.stamp, told.error_x, told.error_y, told.std_m};
+  bool TakeSent(int id, const SentFix& sent, FixReading* z) {
+    if (newest(id) != kNever && sent.stamp < newest(id) + apart_) return false;
+    newest_[static_cast<std::size_t>(id)] = sent.stamp;
+    *z = {id, sent.stamp, sent.error_x, sent.error_y, sent.std_m};
     return true;
   }
 
@@ -70,7 +70,7 @@ class Fixes {
   TimeNs telling_, apart_;
   std::vector<TimeNs> newest_;  // [auvs]
   int count_ = 0;
-  ToldFix own_;
+  SentFix own_;
 };
 
 }  // namespace stg::agent

@@ -59,13 +59,13 @@ double JointFilter::Column(const Row& row, double* column) const {
   return sum;
 }
 
-void JointFilter::Offset(int to, int from, const Vec3<double>& told, double age_s,
+void JointFilter::Offset(int to, int from, const Vec3<double>& sent, double age_s,
                          double (&offset)[2]) const {
   for (int axis = 0; axis < 2; ++axis) {
     Row error;
     AddError(to, axis, 1.0, age_s, &error);
     AddError(from, axis, -1.0, age_s, &error);
-    offset[axis] = (axis == 0 ? told.x : told.y) - Mean(error);
+    offset[axis] = (axis == 0 ? sent.x : sent.y) - Mean(error);
   }
 }
 

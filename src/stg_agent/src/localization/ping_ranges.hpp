@@ -7,10 +7,10 @@
 
 #include "acoustic_channel/modem/packet.hpp"
 #include "acoustic_channel/water/sound_speed.hpp"
+#include "sent_ways.hpp"
 #include "stg_agent/localization/joint_filter.hpp"
 #include "stg_agent/localization/measured_ranges.hpp"
 #include "stg_agent/localization/own_way.hpp"
-#include "told_ways.hpp"
 
 namespace stg::agent {
 
@@ -36,7 +36,7 @@ class PingRanges {
     waiting_.push_back(w);
   }
   /// Takes a range from another member's packet.
-  void AddTold(const RangeReading& z) {
+  void AddSent(const RangeReading& z) {
     if (waiting_.size() == kMost) return;
     waiting_.emplace_back();
     waiting_.back().z = z;
@@ -46,7 +46,7 @@ class PingRanges {
   /// direction or null, and drops ranges older than `oldest`.
   /// @param ways of all members
   template <class Take>
-  void Give(TimeNs oldest, const OwnWay& own, const std::vector<ToldWay>& ways,
+  void Give(TimeNs oldest, const OwnWay& own, const std::vector<SentWay>& ways,
             const acoustics::SoundSpeedProfile& sound, double surface_z_m, Take&& take) {
     std::size_t kept = 0;
     for (Waiting& w : waiting_) {
@@ -56,7 +56,7 @@ class PingRanges {
         w.placed = own.At(z.at, asked ? &z.p_receiver : &z.p_source);
         if (!w.placed) continue;
       }
-      const auto way = [&ways](int id) -> const ToldWay& {
+      const auto way = [&ways](int id) -> const SentWay& {
         return ways[static_cast<std::size_t>(id)];
       };
       const bool here = asked || way(z.receiver).Between(z.at, &z.p_receiver);

@@ -11,10 +11,10 @@
 #include "localizers.hpp"
 #include "member_models.hpp"
 #include "ping_ranges.hpp"
+#include "sent_ways.hpp"
 #include "stg_agent/localization/joint_filter.hpp"
 #include "stg_agent/localization/measured_ranges.hpp"
 #include "stg_agent/localization/own_way.hpp"
-#include "told_ways.hpp"
 
 namespace stg::agent {
 namespace {
@@ -69,7 +69,7 @@ class RangeLocalizer : public Localizer {
 
   void Reset() override {
     filter_.Clear();
-    for (ToldWay& way : ways_) way.Clear();
+    for (SentWay& way : ways_) way.Clear();
     measured_.Clear();
     std::fill(taken_.begin(), taken_.end(), Taken());
     pending_.clear();
@@ -153,7 +153,7 @@ class RangeLocalizer : public Localizer {
   PlaneError current() const override { return filter_.Current(); }
 
   Vec3<double> NearTo(int id) const override {
-    const ToldWay& way = ways_[static_cast<std::size_t>(id)];
+    const SentWay& way = ways_[static_cast<std::size_t>(id)];
     if (!way.empty()) return way.newest().p;
     // A station may be so far away that the own position cannot resolve it: packets contain it
     // modulo a distance.
@@ -175,19 +175,19 @@ class RangeLocalizer : public Localizer {
   struct Letter {
     int id = 0;
     bool adrift = false;
-    ToldWay::Point way;
+    SentWay::Point way;
     double travel_time_s = 0.0;
-    ShortList<ToldRange, kToldRanges> ranges;
+    ShortList<SentRange, kSentRanges> ranges;
     bool has_bearing = false;
-    ToldBearing bearing;
+    SentBearing bearing;
     bool has_fix = false;
-    ToldFix fix;
+    SentFix fix;
     bool has_direction = false;
     double azimuth_rad = 0.0, elevation_rad = 0.0;
     TimeNs arrival = 0;
   };
 
-  const ToldWay& Way(int id) const { return ways_[static_cast<std::size_t>(id)]; }
+  const SentWay& Way(int id) const { return ways_[static_cast<std::size_t>(id)]; }
 
   void FollowOwn(TimeNs now, const OwnReckoning& own) {
     if (start_std_m_ < 0.0) {
@@ -209,7 +209,7 @@ class RangeLocalizer : public Localizer {
 
   void Read(TimeNs now, const Letter& letter) {
     filter_.Admit(letter.id, letter.way.generation);
-    ToldWay& way = ways_[static_cast<std::size_t>(letter.id)];
+    SentWay& way = ways_[static_cast<std::size_t>(letter.id)];
     const Vec3<double> before = way.empty() ? letter.way.p : way.newest().p;
     if (!way.Add(letter.way)) return;
     if (letter.id < auvs_) {
@@ -231,23 +231,23 @@ class RangeLocalizer : public Localizer {
     if (letter.has_bearing) ReadBearing(now, letter);
     FixReading fix;
     if (letter.has_fix && now - letter.fix.stamp <= kOldest && filter_.knows(letter.id) &&
-        fixes_.TakeTold(letter.id, letter.fix, &fix)) {
+        fixes_.TakeSent(letter.id, letter.fix, &fix)) {
       filter_.Take(fix);
     }
-    for (const ToldRange& told : letter.ranges) {
-      if (told.source == letter.id) continue;
+    for (const SentRange& sent : letter.ranges) {
+      if (sent.source == letter.id) continue;
       z.receiver = letter.id;
-      z.source = told.source;
-      z.range_m = told.range_m;
+      z.source = sent.source;
+      z.range_m = sent.range_m;
       if (pings_) {
-        z.at = told.stamp;
-        by_ping_.AddTold(z);
+        z.at = sent.stamp;
+        by_ping_.AddSent(z);
         continue;
       }
-      const bool source_known = told.source == self_
-                                    ? OwnPacketAt(told.stamp, &z.at, &z.p_source)
-                                    : ways_[static_cast<std::size_t>(told.source)].AtPacket(
-                                          told.stamp, tolerance_, &z.at, &z.p_source);
+      const bool source_known = sent.source == self_
+                                    ? OwnPacketAt(sent.stamp, &z.at, &z.p_source)
+                                    : ways_[static_cast<std::size_t>(sent.source)].AtPacket(
+                                          sent.stamp, tolerance_, &z.at, &z.p_source);
       if (!source_known || !way.Between(z.at, &z.p_receiver)) continue;
       z.sound_mps = SoundBetween(z);
       Take(now, z);
@@ -336,7 +336,7 @@ class RangeLocalizer : public Localizer {
   std::vector<Vec3<double>> chart_;  // [stations]
   ClockModel clocks_;
   JointFilter filter_;
-  std::vector<ToldWay> ways_;  // by member
+  std::vector<SentWay> ways_;  // by member
   MeasuredRanges measured_;
   std::vector<Letter> pending_;
   OwnWay own_way_;

@@ -29,15 +29,15 @@ inline constexpr int kNameBits = 4, kManyBits = 2, kFreeRangeBits = 12, kEarlier
 /// not indices of targets.
 inline constexpr int kLocatedDeviationBits = kDeviationBits - 1;
 inline constexpr std::uint64_t kRangesCode = 31, kFixCode = 30, kBearingCode = 29, kNoSource = 31;
-inline constexpr int kToldSourceBits = 5, kToldAgeBits = 9, kToldRangeBits = 14,
-                     kToldAzimuthBits = 14;
-inline constexpr int kToldErrorBits = 21, kToldStdBits = 5;
+inline constexpr int kSentSourceBits = 5, kSentAgeBits = 9, kSentRangeBits = 14,
+                     kSentAzimuthBits = 14;
+inline constexpr int kSentErrorBits = 21, kSentStdBits = 5;
 inline constexpr double kMostError_m = 65535.0, kLeastFixStd_m = 0.1, kMostFixStd_m = 100.0;
 inline constexpr int kSurfacingBit = kFirstSighting + kSightings * kSightingBits;
-static_assert(1 + kTargetBits + kToldAgeBits + 2 * kToldErrorBits + kToldStdBits == kSightingBits,
+static_assert(1 + kTargetBits + kSentAgeBits + 2 * kSentErrorBits + kSentStdBits == kSightingBits,
               "a fix takes the room of a measurement");
 static_assert(kSurfacingBit + 1 == kCrcFirst, "all bits are used");
-static_assert(1 + kTargetBits + kToldRanges * (kToldSourceBits + kToldAgeBits + kToldRangeBits) ==
+static_assert(1 + kTargetBits + kSentRanges * (kSentSourceBits + kSentAgeBits + kSentRangeBits) ==
                   kSightingBits,
               "two ranges take the room of a measurement");
 static_assert(kFirstSighting + kSightings * kSightingBits <= kCrcFirst, "both measurements fit");

@@ -84,10 +84,10 @@ MeasurementPacket::MeasurementPacket(const AgentModel& s)
   elevation_ = Quantiser::Signed(2.0, kElevationBits);
   fine_azimuth_ = Quantiser::Signed(kPi, kFineAzimuthBits);
   fine_elevation_ = Quantiser::Signed(2.0, kFineElevationBits);
-  told_azimuth_ = Quantiser::Signed(kPi, kToldAzimuthBits);
-  told_range_ = Quantiser::Unsigned(kLeastRange_m, kMostRange_m, kToldRangeBits);
-  told_error_ = Quantiser::Signed(kMostError_m, kToldErrorBits);
-  told_std_ = Logarithm::Of(kLeastFixStd_m, kMostFixStd_m, kToldStdBits);
+  sent_azimuth_ = Quantiser::Signed(kPi, kSentAzimuthBits);
+  sent_range_ = Quantiser::Unsigned(kLeastRange_m, kMostRange_m, kSentRangeBits);
+  sent_error_ = Quantiser::Signed(kMostError_m, kSentErrorBits);
+  sent_std_ = Logarithm::Of(kLeastFixStd_m, kMostFixStd_m, kSentStdBits);
   deviation_ = Logarithm::Of(1e-5 * half, half, located_ ? kLocatedDeviationBits : kDeviationBits);
   error_ = Logarithm::Of(1e-4 * half, 2.0 * std::sqrt(3.0) * half, kErrorBits);
 }
@@ -127,7 +127,7 @@ Packet MeasurementPacket::Encode(const NeighbourState& s) const {
       WriteSighting(s, s.sightings[k], &w);
     }
   }
-  if (located_) WriteTold(s, &w);
+  if (located_) WriteSent(s, &w);
   w.at = saturated_bit;
   w.Bits(w.saturated ? 1 : 0, 1);
   w.at = kCrcFirst;
@@ -253,7 +253,7 @@ NeighbourState MeasurementPacket::Decode(const std::uint8_t* data, std::size_t s
   for (int k = 0; k < fit; ++k) {
     r.at = kFirstSighting + k * kSightingBits;
     if (r.Bits(1) == 0) continue;
-    if (located_ && ReadTold(k, &r, &s)) continue;
+    if (located_ && ReadSent(k, &r, &s)) continue;
     ReadSighting(s, &r, &s.sightings.push_back({}));
   }
   if (located_) s.surfacing = Get(r.words, {kSurfacingBit, 1}) != 0;

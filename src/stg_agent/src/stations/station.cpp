@@ -82,7 +82,7 @@ void Station::Receive(const acoustics::Reception& reception, const Vec3<double>&
   const int source = PacketCodec::SourceOf(bytes.data, bytes.size);
   if (source < 0 || source >= constants_->model.members()) return;
   try {
-    const Vec3<double> near = localizer_ != nullptr ? localizer_->NearTo(source) : told_W();
+    const Vec3<double> near = localizer_ != nullptr ? localizer_->NearTo(source) : stated_W();
     const NeighbourState state =
         constants_->codec.Decode(bytes.data, bytes.size, reception.arrival, near);
     if (localizer_ != nullptr) localizer_->Hear(state, reception);
@@ -107,7 +107,7 @@ void Station::Receive(const acoustics::Reception& reception, const Vec3<double>&
 void Station::MeasureRange(const NeighbourState& state, const acoustics::Reception& reception) {
   // The slowness depends on depths only, which a packet contains whole.
   const double slowness = SlownessBetween(
-      sound_, constants_->model.channel.physical.water.surface_z_m, told_W(), state.p_W);
+      sound_, constants_->model.channel.physical.water.surface_z_m, stated_W(), state.p_W);
   ranges_->Add({state.source, reception.transmit, reception.travel_time_s / slowness});
 }
 
@@ -119,7 +119,7 @@ void Station::Advance(TimeNs now, std::uint32_t step) {
   }
   now_ = now;
   if (localizer_ == nullptr) return;
-  localizer_->Advance(now, {told_W(), constants_->model.stations.gps_std_m});
+  localizer_->Advance(now, {stated_W(), constants_->model.stations.gps_std_m});
   if (craft_ && dt_s > 0.0) v_W_ += (Wanted(now) - v_W_) * (1.0 - std::exp(-dt_s / kCraftLag_s));
 }
 
@@ -138,7 +138,7 @@ Vec3<double> Station::Wanted(TimeNs now) const {
   }
   const Vec3<double> centre = count > 0 ? middle * (1.0 / count) : home_W_;
   const StationsConfig& s = constants_->model.stations;
-  const Vec3<double> out{told_W().x - centre.x, told_W().y - centre.y, 0.0};
+  const Vec3<double> out{stated_W().x - centre.x, stated_W().y - centre.y, 0.0};
   const double rho = std::max(Norm(out), 1e-3), R = s.craft_circle_m;
   // The velocity field of a limit cycle leads onto the circle and around it.
   const double radial = (R * R - rho * rho) / rho, around = 2.0 * R;
@@ -150,20 +150,20 @@ void Station::TellBearing(NeighbourState* state) {
   constexpr TimeNs kNew = 30'000'000'000;
   Heard* next = nullptr;
   for (Heard& h : heard_) {
-    if (h.stamp < 0 || h.bearing.stamp <= h.told || now_ - h.bearing.stamp > kNew) continue;
-    if (next == nullptr || h.told < next->told) next = &h;
+    if (h.stamp < 0 || h.bearing.stamp <= h.sent || now_ - h.bearing.stamp > kNew) continue;
+    if (next == nullptr || h.sent < next->sent) next = &h;
   }
   if (next == nullptr) return;
   state->has_bearing = true;
   state->bearing = next->bearing;
-  next->told = now_;
+  next->sent = now_;
 }
 
 Packet Station::MakePacket() {
   NeighbourState state;
   state.source = member_;
   state.generation = now_;
-  state.p_W = told_W();
+  state.p_W = stated_W();
   state.v_W = v_W_;
   const StationsConfig& s = constants_->model.stations;
   state.position_std_m = craft_ ? s.gps_std_m : s.survey_std_m;

@@ -76,17 +76,17 @@ class DriftingSea {
       return offset[static_cast<std::size_t>(id)] + rate[static_cast<std::size_t>(id)] * t;
     };
     std::vector<double> h(n);
-    std::vector<Vec3<double>> told(n);
+    std::vector<Vec3<double>> sent(n);
     for (std::size_t i = 0; i < n && o_.headings.std_rad > 0.0; ++i) {
       h[i] = o_.headings.std_rad * Normal();
-      told[i] = Overheard(static_cast<int>(i), 0.0, e, g);
+      sent[i] = Overheard(static_cast<int>(i), 0.0, e, g);
     }
     /// The filter takes the way of an AUV since the last packet of which it knows.
     const auto go = [&](int id, double t) {
       if (o_.headings.std_rad <= 0.0 || id >= o_.auvs) return;
       const Vec3<double> p = Overheard(id, t, e, g);
-      filter.Turn(id, p - told[static_cast<std::size_t>(id)]);
-      told[static_cast<std::size_t>(id)] = p;
+      filter.Turn(id, p - sent[static_cast<std::size_t>(id)]);
+      sent[static_cast<std::size_t>(id)] = p;
     };
     DriftResult r;
     const auto slots = static_cast<int>(o_.seconds / o_.slot_s);

@@ -178,15 +178,15 @@ TEST(RangeLocalizer, AFixOfAnotherAuvServesThisOneAndCountsOnce) {
   const auto once = MakeLocalizer(model, 0), often = MakeLocalizer(model, 0),
              never = MakeLocalizer(model, 0);
   for (Localizer* l : {once.get(), often.get(), never.get()}) l->Reset();
-  int told = 0;
+  int sent = 0;
   for (int t = 0; t <= 1230; ++t) {
     std::vector<Letter> all, first, none;
     if (t > 0) {
       // Packets round ages to an eighth of a decision.
       all = {WithFix(flight, t, 0.0625)};
       first = all;
-      told = first[0].state.has_fix ? told + 1 : t % 600 > 20 ? 0 : told;
-      if (told > 1) first[0].state.has_fix = false;
+      sent = first[0].state.has_fix ? sent + 1 : t % 600 > 20 ? 0 : sent;
+      if (sent > 1) first[0].state.has_fix = false;
       none = {flight.At(t)};
       if (all[0].state.has_fix) none[0].state.ranges.clear();
     }

@@ -45,20 +45,20 @@ NeighbourState AfterTwoPackets(const AgentConstants& constants, Station* beacon)
     beacon->Receive(reception, state.p_W);
   }
   beacon->Advance(2 * kHeard, 2);
-  const Packet told = beacon->MakePacket();
-  return constants.codec.Decode(told.data(), told.size(), 3 * kHeard, {});
+  const Packet sent = beacon->MakePacket();
+  return constants.codec.Decode(sent.data(), sent.size(), 3 * kHeard, {});
 }
 
 TEST(Station, ABeaconTellsTheRangesThatItMeasured) {
   const auto constants = Constants("one_way");
   Station beacon(constants, 0);
-  const NeighbourState told = AfterTwoPackets(*constants, &beacon);
-  ASSERT_EQ(told.ranges.size(), 2u);
-  for (const ToldRange& range : told.ranges) {
+  const NeighbourState sent = AfterTwoPackets(*constants, &beacon);
+  ASSERT_EQ(sent.ranges.size(), 2u);
+  for (const SentRange& range : sent.ranges) {
     EXPECT_NEAR(range.range_m, 150.0 + 150.0 * range.source, 0.4);
     EXPECT_NEAR(static_cast<double>(range.stamp), static_cast<double>(kHeard), 0.2e9);
   }
-  EXPECT_NE(told.ranges[0].source, told.ranges[1].source);
+  EXPECT_NE(sent.ranges[0].source, sent.ranges[1].source);
   beacon.Reset(0, 1);
   const Packet fresh = beacon.MakePacket();
   EXPECT_TRUE(constants->codec.Decode(fresh.data(), fresh.size(), kHeard, {}).ranges.empty());

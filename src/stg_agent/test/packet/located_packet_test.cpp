@@ -40,15 +40,15 @@ TEST(LocatedPacket, PositionsMayLeaveTheRegion) {
   const NeighbourState s = Example();
   const Packet packet = codec.Encode(s);
   EXPECT_EQ(PacketCodec::SourceOf(packet.data(), packet.size()), 2);
-  const NeighbourState told =
+  const NeighbourState sent =
       codec.Decode(packet.data(), packet.size(), s.generation, {2500.0, -2000.0, 0.0});
-  EXPECT_NEAR(told.p_W.x, s.p_W.x, 0.08);
-  EXPECT_NEAR(told.p_W.y, s.p_W.y, 0.08);
-  EXPECT_NEAR(told.p_W.z, s.p_W.z, 0.08);
-  EXPECT_FALSE(told.saturated);
-  EXPECT_TRUE(told.adrift);
-  EXPECT_GE(told.position_std_m, s.position_std_m);
-  EXPECT_LT(told.position_std_m, 1.5 * s.position_std_m);
+  EXPECT_NEAR(sent.p_W.x, s.p_W.x, 0.08);
+  EXPECT_NEAR(sent.p_W.y, s.p_W.y, 0.08);
+  EXPECT_NEAR(sent.p_W.z, s.p_W.z, 0.08);
+  EXPECT_FALSE(sent.saturated);
+  EXPECT_TRUE(sent.adrift);
+  EXPECT_GE(sent.position_std_m, s.position_std_m);
+  EXPECT_LT(sent.position_std_m, 1.5 * s.position_std_m);
 }
 
 TEST(LocatedPacket, CarriesTwoRangesBesideASighting) {
@@ -63,14 +63,14 @@ TEST(LocatedPacket, CarriesTwoRangesBesideASighting) {
   s.has_target = true;
   s.sightings.push_back(d);
   const Packet packet = codec.Encode(s);
-  const NeighbourState told = codec.Decode(packet.data(), packet.size(), s.generation, s.p_W);
-  ASSERT_EQ(told.sightings.size(), 1);
-  EXPECT_NEAR(told.sightings[0].range_m, 90.0, 0.05);
-  ASSERT_EQ(told.ranges.size(), 2);
+  const NeighbourState sent = codec.Decode(packet.data(), packet.size(), s.generation, s.p_W);
+  ASSERT_EQ(sent.sightings.size(), 1);
+  EXPECT_NEAR(sent.sightings[0].range_m, 90.0, 0.05);
+  ASSERT_EQ(sent.ranges.size(), 2);
   for (int k = 0; k < 2; ++k) {
-    EXPECT_EQ(told.ranges[k].source, s.ranges[k].source);
-    EXPECT_NEAR(told.ranges[k].range_m, s.ranges[k].range_m, 0.16);
-    EXPECT_NEAR(static_cast<double>(told.ranges[k].stamp - s.ranges[k].stamp), 0.0, 0.0626e9);
+    EXPECT_EQ(sent.ranges[k].source, s.ranges[k].source);
+    EXPECT_NEAR(sent.ranges[k].range_m, s.ranges[k].range_m, 0.16);
+    EXPECT_NEAR(static_cast<double>(sent.ranges[k].stamp - s.ranges[k].stamp), 0.0, 0.0626e9);
   }
 }
 
@@ -84,13 +84,13 @@ TEST(LocatedPacket, AStationTellsABearingBesideTwoRanges) {
   for (const double azimuth : {-3.1, -0.5, 0.0, 1.25, 3.1}) {
     s.bearing = {3, 44'000'000'000, azimuth};
     const Packet packet = codec.Encode(s);
-    const NeighbourState told = codec.Decode(packet.data(), packet.size(), s.generation, s.p_W);
-    ASSERT_TRUE(told.has_bearing);
-    EXPECT_EQ(told.bearing.source, 3);
-    EXPECT_NEAR(static_cast<double>(told.bearing.stamp - s.bearing.stamp), 0.0, 0.0626e9);
-    EXPECT_NEAR(told.bearing.azimuth_rad, azimuth, 0.51 * kStep_rad);
-    EXPECT_EQ(told.sightings.size(), 0);
-    EXPECT_EQ(told.ranges.size(), 2);
+    const NeighbourState sent = codec.Decode(packet.data(), packet.size(), s.generation, s.p_W);
+    ASSERT_TRUE(sent.has_bearing);
+    EXPECT_EQ(sent.bearing.source, 3);
+    EXPECT_NEAR(static_cast<double>(sent.bearing.stamp - s.bearing.stamp), 0.0, 0.0626e9);
+    EXPECT_NEAR(sent.bearing.azimuth_rad, azimuth, 0.51 * kStep_rad);
+    EXPECT_EQ(sent.sightings.size(), 0);
+    EXPECT_EQ(sent.ranges.size(), 2);
   }
   s.bearing.source = 5;
   EXPECT_THROW(codec.Encode(s), std::invalid_argument);
@@ -107,19 +107,19 @@ TEST(LocatedPacket, CarriesAFixInPlaceOfTheRanges) {
       s.fix = {s.generation - 700'000'000, error, -0.5 * error, std_m};
       s.surfacing = error > 0.0;
       const Packet packet = codec.Encode(s);
-      const NeighbourState told = codec.Decode(packet.data(), packet.size(), s.generation, s.p_W);
-      ASSERT_TRUE(told.has_fix);
-      EXPECT_EQ(told.surfacing, s.surfacing);
-      EXPECT_EQ(told.ranges.size(), 0);
-      EXPECT_FALSE(told.saturated);
-      EXPECT_NEAR(static_cast<double>(told.fix.stamp - s.fix.stamp), 0.0, 0.0626e9);
-      EXPECT_NEAR(told.fix.error_x, error, 1.001 * layout.told_fix_error_m());
-      EXPECT_NEAR(told.fix.error_y, -0.5 * error, 1.001 * layout.told_fix_error_m());
-      EXPECT_GE(told.fix.std_m, std_m * (1.0 - 1e-9));
-      EXPECT_LT(told.fix.std_m, 1.27 * std_m);
+      const NeighbourState sent = codec.Decode(packet.data(), packet.size(), s.generation, s.p_W);
+      ASSERT_TRUE(sent.has_fix);
+      EXPECT_EQ(sent.surfacing, s.surfacing);
+      EXPECT_EQ(sent.ranges.size(), 0);
+      EXPECT_FALSE(sent.saturated);
+      EXPECT_NEAR(static_cast<double>(sent.fix.stamp - s.fix.stamp), 0.0, 0.0626e9);
+      EXPECT_NEAR(sent.fix.error_x, error, 1.001 * layout.sent_fix_error_m());
+      EXPECT_NEAR(sent.fix.error_y, -0.5 * error, 1.001 * layout.sent_fix_error_m());
+      EXPECT_GE(sent.fix.std_m, std_m * (1.0 - 1e-9));
+      EXPECT_LT(sent.fix.std_m, 1.27 * std_m);
     }
   }
-  EXPECT_LT(layout.told_fix_error_m(), 0.04);
+  EXPECT_LT(layout.sent_fix_error_m(), 0.04);
   s.fix.stamp = s.generation + 1;
   EXPECT_THROW(codec.Encode(s), std::invalid_argument);
   // A station cannot have a fix.
@@ -136,9 +136,9 @@ TEST(LocatedPacket, AStationSpeaksTheSameLayoutAndOthersDoNot) {
   s.source = 4;
   s.ranges.clear();
   const Packet packet = codec.Encode(s);
-  const NeighbourState told = codec.Decode(packet.data(), packet.size(), s.generation, s.p_W);
-  EXPECT_EQ(told.source, 4);
-  EXPECT_EQ(told.ranges.size(), 0);
+  const NeighbourState sent = codec.Decode(packet.data(), packet.size(), s.generation, s.p_W);
+  EXPECT_EQ(sent.source, 4);
+  EXPECT_EQ(sent.ranges.size(), 0);
   const PacketCodec plain(Model("uncorrected"), PacketLayout::kMeasurements);
   EXPECT_THROW(plain.Decode(packet.data(), packet.size(), s.generation), UserError);
   s.source = 5;

@@ -129,9 +129,9 @@ TEST(SearchMap, NothingLiesOutsideOfTheWorkspace) {
 
 TEST(SearchMemory, APacketWithoutAMeasurementIsALookInVain) {
   const AgentModel s = Searchers();
-  SearchMemory told(s), looked(s);
+  SearchMemory sent(s), looked(s);
   const dynamics::Cue cue{0, {0.0, 0.0, -40.0}, 500.0};
-  told.Start(cue);
+  sent.Start(cue);
   looked.Start(cue);
   NeighbourTable nobody(s, 0), table(s, 0);
   NeighbourState state;
@@ -140,17 +140,17 @@ TEST(SearchMemory, APacketWithoutAMeasurementIsALookInVain) {
   state.p_W = {200.0, 100.0, -30.0};
   table.Update(state);
   const Vec3<double> far{3900.0, 3900.0, -20.0};
-  told.Update(Ns(5.0), far, table);
+  sent.Update(Ns(5.0), far, table);
   looked.Update(Ns(5.0), state.p_W, nobody);
   for (int r = 0; r < SearchMap::kSide; ++r) {
     for (int c = 0; c < SearchMap::kSide; ++c) {
-      ASSERT_NEAR(told.map().mass(r, c), looked.map().mass(r, c), 1e-12);
+      ASSERT_NEAR(sent.map().mass(r, c), looked.map().mass(r, c), 1e-12);
     }
   }
   // The same packet a second time changes nothing.
-  const double before = told.map().mass(15, 15);
-  told.Update(Ns(10.0), far, table);
-  EXPECT_NEAR(told.map().mass(15, 15), before, 1e-12);
+  const double before = sent.map().mass(15, 15);
+  sent.Update(Ns(10.0), far, table);
+  EXPECT_NEAR(sent.map().mass(15, 15), before, 1e-12);
 }
 
 }  // namespace

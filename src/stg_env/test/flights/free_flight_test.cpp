@@ -56,14 +56,14 @@ TEST(FreeFlight, SharedMeasurementsReachWhoSeesNothing) {
   TestEnv env(Short(Shipped("many8"), 400));
   env.Reset();
   Fly(&env, "assign", 300);
-  int told = 0;
+  int sent = 0;
   for (int i = 0; i < env.agents(); ++i) {
     for (int k = 0; k < 3; ++k) {
       const double d = Norm(env.target(0, k).p_WT - env.vehicle(0, i).p_WB);
-      told += d > 900.0 && env.agent(0, i).belief(k).observed ? 1 : 0;
+      sent += d > 900.0 && env.agent(0, i).belief(k).observed ? 1 : 0;
     }
   }
-  EXPECT_GT(told, 0);
+  EXPECT_GT(sent, 0);
 }
 
 TEST(Members, WhoHasLeftIsSilentAndUnpaidAndComesBackKnowingNothing) {

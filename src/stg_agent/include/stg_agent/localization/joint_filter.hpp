@@ -175,7 +175,7 @@ class JointFilter {
   double Column(const Row& row, double* column) const;
   PlaneError Spread(const Row& east, const Row& north) const;
   /// Reported offset of two members minus their errors [m], by axis.
-  void Offset(int to, int from, const Vec3<double>& told, double age_s, double (&offset)[2]) const;
+  void Offset(int to, int from, const Vec3<double>& sent, double age_s, double (&offset)[2]) const;
   /// Variance that the currents of two members add in some time [m^2].
   double Wander(double age_s) const;
   /// Density of the innovation of a late sound [1/m].

@@ -25,8 +25,8 @@ class MeasuredRanges {
   /// @param members AUVs, then stations
   MeasuredRanges(int auvs, int members) : auvs_(auvs), newest_(static_cast<std::size_t>(members)) {}
 
-  void Clear() { std::fill(newest_.begin(), newest_.end(), ToldRange()); }
-  void Add(const ToldRange& range) { newest_[static_cast<std::size_t>(range.source)] = range; }
+  void Clear() { std::fill(newest_.begin(), newest_.end(), SentRange()); }
+  void Add(const SentRange& range) { newest_[static_cast<std::size_t>(range.source)] = range; }
 
   /// Adds to a packet a range to a station, if one was received, and a range to an AUV. The choice
   /// changes from packet to packet.
@@ -43,7 +43,7 @@ class MeasuredRanges {
   static constexpr TimeNs kOldest = 30'000'000'000;
 
   bool Usable(int id, const NeighbourState& packet) const {
-    const ToldRange& r = newest_[static_cast<std::size_t>(id)];
+    const SentRange& r = newest_[static_cast<std::size_t>(id)];
     if (r.range_m == 0.0 || r.range_m < kLeastRange_m || r.range_m > kMostRange_m) return false;
     if (packet.generation - r.stamp > kOldest) return false;
     return packet.ranges.empty() || packet.ranges[0].source != id;
@@ -66,7 +66,7 @@ class MeasuredRanges {
   }
 
   int auvs_;
-  std::vector<ToldRange> newest_;  // by member
+  std::vector<SentRange> newest_;  // by member
 };
 
 }  // namespace stg::agent

@@ -60,7 +60,7 @@ class MeasurementPacket {
   double range_error_m() const { return 0.5 * range_.resolution; }
   double azimuth_error_rad() const { return 0.5 * azimuth_.resolution; }
   double elevation_error_rad() const { return 0.5 * elevation_.resolution; }
-  double told_fix_error_m() const { return 0.5 * told_error_.resolution; }
+  double sent_fix_error_m() const { return 0.5 * sent_error_.resolution; }
 
  private:
   struct Writer;
@@ -94,18 +94,18 @@ class MeasurementPacket {
   void SetDeviations(const NeighbourState& s, dynamics::Detection* d) const;
   void WritePlace(const Vec3<double>& p, Writer* w) const;
   Vec3<double> ReadPlace(const Vec3<double>& near, Reader* r) const;
-  TimeNs ToldAge(const NeighbourState& s, TimeNs stamp, Writer* w) const;
-  void WriteToldBearing(const NeighbourState& s, Writer* w) const;
-  void ReadToldBearing(Reader* r, NeighbourState* s) const;
-  void WriteToldRanges(const NeighbourState& s, Writer* w) const;
-  void ReadToldRanges(Reader* r, NeighbourState* s) const;
-  void WriteToldFix(const NeighbourState& s, Writer* w) const;
-  void ReadToldFix(Reader* r, NeighbourState* s) const;
+  TimeNs SentAge(const NeighbourState& s, TimeNs stamp, Writer* w) const;
+  void WriteSentBearing(const NeighbourState& s, Writer* w) const;
+  void ReadSentBearing(Reader* r, NeighbourState* s) const;
+  void WriteSentRanges(const NeighbourState& s, Writer* w) const;
+  void ReadSentRanges(Reader* r, NeighbourState* s) const;
+  void WriteSentFix(const NeighbourState& s, Writer* w) const;
+  void ReadSentFix(Reader* r, NeighbourState* s) const;
   /// The items of agents with a localizer: ranges, a bearing or a fix.
-  void WriteTold(const NeighbourState& s, Writer* w) const;
+  void WriteSent(const NeighbourState& s, Writer* w) const;
   /// Reads such an item in place of measurement k, whose code is next; false: a measurement
   /// follows.
-  bool ReadTold(int k, Reader* r, NeighbourState* s) const;
+  bool ReadSent(int k, Reader* r, NeighbourState* s) const;
 
   int agents_, targets_;
   bool free_;     ///< task.assignment is free: version 3
@@ -119,8 +119,8 @@ class MeasurementPacket {
   double heading_variance_, heading_walk_;  // [rad^2], [rad^2/s]
   TimeNs age_step_;
   Quantiser position_, velocity_, unit_, offset_, rise_, range_, azimuth_, elevation_;
-  Quantiser fine_azimuth_, fine_elevation_, told_azimuth_, told_range_, told_error_;
-  Logarithm deviation_, error_, told_std_;
+  Quantiser fine_azimuth_, fine_elevation_, sent_azimuth_, sent_range_, sent_error_;
+  Logarithm deviation_, error_, sent_std_;
 };
 
 }  // namespace stg::agent

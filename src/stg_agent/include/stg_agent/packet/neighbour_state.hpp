@@ -26,25 +26,25 @@ inline constexpr int kFreeSightings = 5;
 inline constexpr int kMostFreeTargets = 15;
 /// Ranges in one packet of agents with a localizer, and the smallest and the largest one. Where
 /// clocks are off, a range may be below 0.
-inline constexpr int kToldRanges = 2;
+inline constexpr int kSentRanges = 2;
 inline constexpr double kLeastRange_m = -100.0, kMostRange_m = 4900.0;
 
 /// A range that a member of the network measured from another member's packet.
-struct ToldRange {
+struct SentRange {
   int source = 0;        ///< member that sent the packet
   TimeNs stamp = 0;      ///< when its transmission began
   double range_m = 0.0;  ///< by its travel time
 };
 
 /// The bearing at which a station received an AUV's packet.
-struct ToldBearing {
+struct SentBearing {
   int source = 0;            ///< AUV that sent the packet
   TimeNs stamp = 0;          ///< when its transmission began
   double azimuth_rad = 0.0;  ///< from the station, from east anticlockwise
 };
 
 /// An AUV's own GPS fix.
-struct ToldFix {
+struct SentFix {
   TimeNs stamp = 0;
   double error_x = 0.0, error_y = 0.0;  ///< reckoned minus GPS position at that time [m]
   double std_m = 0.0;                   ///< of each component
@@ -75,12 +75,12 @@ struct NeighbourState {
   ShortList<dynamics::Detection, kFreeSightings> sightings;
   // With a localizer.
   bool adrift = false;  ///< its log measures against the water
-  ShortList<ToldRange, kToldRanges> ranges;
+  ShortList<SentRange, kSentRanges> ranges;
   bool has_bearing = false;  ///< only from a station, which has no measurements of targets
-  ToldBearing bearing;
+  SentBearing bearing;
   bool surfacing = false;  ///< it goes up for a fix by satellite
   bool has_fix = false;    ///< in place of the ranges
-  ToldFix fix;
+  SentFix fix;
   bool saturated = false;  ///< set by Encode when a value did not fit and was clipped
 };
 

@@ -36,7 +36,7 @@ class Station {
   const Vec3<double>& v_W() const { return v_W_; }  ///< true velocity [m/s]
   /// True position at a time near the last Advance [m].
   Vec3<double> At(TimeNs t) const { return p_W_ + v_W_ * Seconds(t - now_); }
-  Vec3<double> told_W() const { return p_W_ + error_W_; }
+  Vec3<double> stated_W() const { return p_W_ + error_W_; }
   bool craft() const { return craft_; }
   int member() const { return member_; }
   Packet MakePacket();
@@ -45,8 +45,8 @@ class Station {
   struct Heard {
     TimeNs stamp = -1;  ///< never
     Vec3<double> p_W, v_W;
-    ToldBearing bearing;
-    TimeNs told = -1;  ///< when its bearing was last sent; -1: never
+    SentBearing bearing;
+    TimeNs sent = -1;  ///< when its bearing was last sent; -1: never
   };
   void Err(std::uint32_t step, bool start);
   /// Measures the range of a received packet by its travel time.

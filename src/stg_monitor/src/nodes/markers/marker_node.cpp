@@ -209,12 +209,12 @@ class MarkerNode {
     if (!PossibleStamp(odom.header.stamp)) return refused_.Add(Refusals::kStale);
     SetNodeTime(odom.header.stamp);
     Advance(odom.header.stamp);
-    if (!told_of_truth_) Place(i, odom.pose.pose);
+    if (!has_truth_) Place(i, odom.pose.pose);
   }
 
   /// Shows the true positions of the AUVs. The odometry has their estimated positions.
   void OnTruth(const auv_msgs::SwarmState& swarm) {
-    told_of_truth_ = true;
+    has_truth_ = true;
     const std::size_t count = std::min(swarm.poses.size(), view_.vehicles.size());
     for (std::size_t i = 0; i < count; ++i) {
       if (Finite(swarm.poses[i].position)) Place(i, swarm.poses[i]);
@@ -274,7 +274,7 @@ class MarkerNode {
       const auto [found, is_new] = view_.links.try_emplace({source, destination});
       LinkView& link = found->second;
       // Counts are only used for packets if there are no messages about packets.
-      const bool counts = !is_new && !told_of_packets_;
+      const bool counts = !is_new && !has_packets_;
       if (counts && s.delivered > link.delivered) {
         view_.packets.push_back({source, destination, t, false, auv_msgs::LinkState::NONE});
       }
@@ -286,7 +286,7 @@ class MarkerNode {
   }
 
   void OnPackets(const auv_msgs::PacketEvents& events) {
-    told_of_packets_ = true;
+    has_packets_ = true;
     const double t = events.header.stamp.toSec();
     for (const auv_msgs::PacketEvent& e : events.events) {
       if (e.source >= kMaxVehicles) continue;
@@ -351,8 +351,8 @@ class MarkerNode {
   SwarmView view_;
   ros::Publisher overview_pub_, close_pub_, terrain_pub_;
   ros::Subscriber scenario_sub_, links_sub_, packets_sub_, truth_sub_;
-  bool told_of_truth_ = false;
-  bool told_of_packets_ = false;
+  bool has_truth_ = false;
+  bool has_packets_ = false;
   std::vector<ros::Subscriber> subscribers_;
   ros::WallTimer draw_timer_, discover_timer_;
   Health health_;

@@ -42,13 +42,13 @@ Ippo::Ippo(const IppoConfig& config, const TrainConfig& common, const Problem& p
 
 void Ippo::Begin(const Collection& collection) {
   Collection singles = collection;
-  announced_.resize(collection.shards.size());
+  row_values_.resize(collection.shards.size());
   for (std::size_t s = 0; s < singles.shards.size(); ++s) {
     Shard& shard = singles.shards[s];
     shard.first_env *= agents_;
     shard.envs *= agents_;
-    announced_[s].rewards.resize(static_cast<std::size_t>(shard.envs));
-    announced_[s].truncated.resize(static_cast<std::size_t>(shard.envs));
+    row_values_[s].rewards.resize(static_cast<std::size_t>(shard.envs));
+    row_values_[s].truncated.resize(static_cast<std::size_t>(shard.envs));
   }
   single_.Begin(singles);
 }
@@ -68,16 +68,16 @@ void Ippo::Act(const Decision& decision, const Actions& out) {
 
 void Ippo::Observe(const Transition& t) {
   assert(t.final_observations != nullptr);
-  Told& told = announced_[static_cast<std::size_t>(t.shard)];
+  RowValues& values = row_values_[static_cast<std::size_t>(t.shard)];
   for (int row = 0; row < t.envs * agents_; ++row) {
-    told.rewards[static_cast<std::size_t>(row)] = t.team_rewards[row / agents_];
-    told.truncated[static_cast<std::size_t>(row)] = t.truncated[row / agents_];
+    values.rewards[static_cast<std::size_t>(row)] = t.team_rewards[row / agents_];
+    values.truncated[static_cast<std::size_t>(row)] = t.truncated[row / agents_];
   }
   Transition single = t;
   single.envs *= agents_;
   single.states = t.observations;
-  single.rewards = single.team_rewards = told.rewards.data();
-  single.truncated = told.truncated.data();
+  single.rewards = single.team_rewards = values.rewards.data();
+  single.truncated = values.truncated.data();
   single.next_states = t.next_observations;
   single.final_states = t.final_observations;
   single_.Observe(single);

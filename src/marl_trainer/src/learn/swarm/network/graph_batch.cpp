@@ -28,8 +28,8 @@ void GraphBatch::PassMessages(const float* p, const PackedRows& x, Workspace* w)
   DenseRows(p, blocks_.edge_target, w->sets_[0].second.data(), targets, false, &w->base_);
   ProductRows(p, blocks_.edge_row, x.edges(), x.edge_offset(rows), &w->edge_);
   w->message_.resize(Count(x.edge_offset(rows) + targets, width));
-  w->announced_.assign(Count(targets, 3 * width), 0.0F);
-  w->told_most_.assign(Count(targets, width), -1);
+  w->heard_.assign(Count(targets, 3 * width), 0.0F);
+  w->heard_most_.assign(Count(targets, width), -1);
   const float* nobody = p + blocks_.edge_nobody.offset;
   float* m = w->message_.data();
   int message = 0;
@@ -39,11 +39,11 @@ void GraphBatch::PassMessages(const float* p, const PackedRows& x, Workspace* w)
     const float* edge = RowOf(w->edge_, x.edge_offset(r), width);
     for (int t = x.offset(0, r); t < x.offset(0, r + 1); ++t) {
       const float* base = RowOf(w->base_, t, width);
-      float* told = RowOf(&w->announced_, t, 3 * width);
-      float *mean = told + width, *most = mean + width;
-      int* which = w->told_most_.data() + Count(t, width);
+      float* heard = RowOf(&w->heard_, t, 3 * width);
+      float *mean = heard + width, *most = mean + width;
+      int* which = w->heard_most_.data() + Count(t, width);
       const float* own = RowOf(w->sets_[0].second, t, width);
-      std::copy(own, own + width, told);
+      std::copy(own, own + width, heard);
       for (int j = 0; j <= count; ++j, m += width, ++message) {
         const float* from = j < count ? RowOf(w->from_, first + j, width) : nobody;
         for (int k = 0; k < width; ++k) {
@@ -60,7 +60,7 @@ void GraphBatch::PassMessages(const float* p, const PackedRows& x, Workspace* w)
       }
     }
   }
-  DenseRows(p, blocks_.update, w->announced_.data(), targets, true, &w->targets_);
+  DenseRows(p, blocks_.update, w->heard_.data(), targets, true, &w->targets_);
 }
 
 void GraphBatch::Join(const float* p, const PackedRows& x, Workspace* w) const {

@@ -78,8 +78,8 @@ void GraphBatch::UndoMessages(const float* p, const PackedRows& x, Workspace* w,
   const int rows = x.rows(), width = spec_.width;
   const int targets = x.offset(0, rows), neighbours = x.offset(1, rows);
   UndoRelu(w->targets_, &w->d_targets_);
-  UndoDense(p, blocks_.update, w->announced_.data(), targets, w->d_targets_.data(), gradient,
-            &w->d_told_);
+  UndoDense(p, blocks_.update, w->heard_.data(), targets, w->d_targets_.data(), gradient,
+            &w->d_heard_);
   w->d_from_.assign(Count(neighbours, width), 0.0F);
   w->d_base_.assign(Count(targets, width), 0.0F);
   w->d_edge_.assign(Count(x.edge_offset(rows), width), 0.0F);
@@ -90,10 +90,10 @@ void GraphBatch::UndoMessages(const float* p, const PackedRows& x, Workspace* w,
     const float share = 1.0F / static_cast<float>(count + 1);
     int edge = x.edge_offset(r);
     for (int t = x.offset(0, r); t < x.offset(0, r + 1); ++t) {
-      const float* d_told = RowOf(w->d_told_, t, 3 * width);
-      const float *d_mean = d_told + width, *d_most = d_mean + width;
-      const int* which = w->told_most_.data() + Count(t, width);
-      AddTimes(1.0F, d_told, width, RowOf(&w->sets_[0].d_second, t, width));
+      const float* d_heard = RowOf(w->d_heard_, t, 3 * width);
+      const float *d_mean = d_heard + width, *d_most = d_mean + width;
+      const int* which = w->heard_most_.data() + Count(t, width);
+      AddTimes(1.0F, d_heard, width, RowOf(&w->sets_[0].d_second, t, width));
       float* d_base = RowOf(&w->d_base_, t, width);
       for (int j = 0; j <= count; ++j, ++message) {
         const float* m = RowOf(w->message_, message, width);

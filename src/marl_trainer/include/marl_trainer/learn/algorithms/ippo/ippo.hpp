@@ -34,14 +34,14 @@ class Ippo : public Algorithm {
 
  private:
   /// Data of an environment's whole swarm, repeated for each AUV.
-  struct Told {
+  struct RowValues {
     std::vector<float> rewards;           ///< [envs, agents]
     std::vector<std::uint8_t> truncated;  ///< [envs, agents]
   };
 
   const int agents_;
   Mappo single_;
-  std::vector<Told> announced_;  // by shard
+  std::vector<RowValues> row_values_;  // by shard
 };
 
 }  // namespace stg::learn

@@ -36,10 +36,10 @@ class GraphBatch {
     };
     std::array<Set, 3> sets_;
     std::array<RowAttention::Workspace, 3> attention_;
-    std::vector<float> from_, base_, edge_, message_, announced_, targets_, prior_;
-    std::vector<int> told_most_, target_most_, neighbour_most_;
+    std::vector<float> from_, base_, edge_, message_, heard_, targets_, prior_;
+    std::vector<int> heard_most_, target_most_, neighbour_most_;
     std::vector<float> self_, joined_, hidden1_, hidden2_, pointed_, sums_, choices_, output_;
-    std::vector<float> d_from_, d_base_, d_edge_, d_told_, d_targets_;
+    std::vector<float> d_from_, d_base_, d_edge_, d_heard_, d_targets_;
     std::vector<float> d_self_, d_joined_, d_hidden1_, d_hidden2_, d_pointed_, d_sums_;
   };
 

@@ -9,7 +9,7 @@
 namespace stg::agent {
 
 /// The last reported positions of one member of the network.
-class ToldWay {
+class SentWay {
  public:
   static constexpr TimeNs kLongestGap = 30'000'000'000;
 
@@ -19,7 +19,7 @@ class ToldWay {
     Vec3<double> p, v;
   };
 
-  void Clear() { *this = ToldWay(); }
+  void Clear() { *this = SentWay(); }
   bool empty() const { return count_ == 0; }
   const Point& newest() const { return At(count_ - 1); }
 
