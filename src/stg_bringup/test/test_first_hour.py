@@ -54,6 +54,10 @@ class Help(unittest.TestCase):
         self.assertEqual(status, 0, output)
         self.assertRegex(output, r"(?m)^  bag$\n +bag file to replay")
         self.assertRegex(output, r"(?m)^  rate:=1.0$")
+        for arguments, option in ((["train"], "--algorithm"), (["train", "field"], "--noise-time")):
+            status, output = run(ROOT / "stg", *arguments, "--help")
+            self.assertEqual(status, 0, output)
+            self.assertIn(option, output)
         status, output = run(ROOT / "stg", "run", "nowhere", "--help")
         self.assertEqual(status, 2, output)
         self.assertIn("no scenario 'nowhere'", output)

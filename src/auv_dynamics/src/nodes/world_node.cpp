@@ -112,7 +112,7 @@ void WorldNode::Advance() {
   const double now = WallSeconds();
   for (const int party : barrier_.GiveUp(now)) WarnOfLoss(party);
   if (!barrier_.Complete()) {
-    if (!pacer_.running()) TellWhoIsMissing(now);
+    if (!pacer_.running()) ReportMissing(now);
     return;
   }
   if (reset_) {

@@ -63,7 +63,7 @@ class WorldNode {
   bool ListenersReady(double now);
   void WarnOfLoss(int party);
   void Warn();
-  void TellWhoIsMissing(double now);
+  void ReportMissing(double now);
   void StepWorld();
   void OpenPart();
   /// Throws UserError if a vehicle's state is outside the range that the nodes accept.

@@ -33,7 +33,7 @@ void WorldNode::Warn() {
 }
 
 /// Names the nodes whose first answer is missing, before the run begins.
-void WorldNode::TellWhoIsMissing(double now) {
+void WorldNode::ReportMissing(double now) {
   if (now - reported_s_ < kWaitingNews_s) return;
   reported_s_ = now;
   std::string missing;

@@ -146,8 +146,9 @@ int main(int argc, char** argv) {
   app.Add("--episodes", &episodes, "number of episodes").From(1, 1000000).ShowDefault();
   app.Add("--seed", &seed,
           "episode e is drawn from seed + e; from " +
-              std::to_string(stg::env::kReportingSeeds.first) +
-              " on, seeds that no training and no choice used")
+              std::to_string(stg::env::kReportingSeeds.first) + " to " +
+              std::to_string(stg::env::kReportingSeeds.last) +
+              " are seeds that no training and no choice used")
 
       .ShowDefault();
   app.Add("--set", &overrides, "scenario override key.path=value, repeatable");

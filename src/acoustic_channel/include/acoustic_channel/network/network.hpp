@@ -43,13 +43,14 @@ class Network {
   void Observe(PacketObserver* observer);
 
   int nodes() const;
-  /// All events up to and including this time have happened. Starts before 0.
+  /// All events up to and including this time have happened. It is below 0 until the first Run, so
+  /// that events at 0 are not in the past.
   TimeNs now() const;
   std::size_t max_payload() const;
   const ModemProfile& profile(int node) const;
   const ChannelTotals& totals() const;
   const LinkTable& table() const;
-  /// Counts and ages begin here instead of at 0.
+  /// Counts of packets and ages of links begin at this time instead of at 0.
   void StartStatistics(TimeNs t);
 
   // Times must be now() or later. Earlier times, and values that are not finite, throw

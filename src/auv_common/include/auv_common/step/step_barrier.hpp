@@ -24,9 +24,9 @@ namespace stg {
 /// them (see StepWindow). Nothing is allocated after construction. Not thread-safe.
 class StepBarrier {
  public:
-  /// Messages about steps at least this far from the present one do not show that a party is
-  /// present [ns]. If steps are long, the limit is three steps: a party may send a message about
-  /// the next step but one before the next is opened.
+  /// A message whose stamp differs from the present step by this or more is no evidence that a
+  /// party runs [ns]. If steps are long, the limit is three steps, because a party may be two steps
+  /// ahead.
   static constexpr TimeNs kRecent = 10'000'000'000;
 
   enum class Opening {

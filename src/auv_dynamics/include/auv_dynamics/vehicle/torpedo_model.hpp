@@ -20,14 +20,16 @@ struct TorpedoActuators {
 ///   (M_RB + M_A) nu_dot + C(nu_r) nu_r + D(nu_r) nu_r + g(eta) = tau(nu_r, actuators) + w,
 /// nu_r the velocity through the water (Fossen 2021, Handbook of Marine Craft Hydrodynamics and
 /// Motion Control, ch. 8.4), written in body FLU:
-/// - inertia of the spheroid, added mass by Lamb's factors, roll 0.3 of the rigid body's;
-/// - linear damping of surge and sway fades with the speed, lift and drag of the hull as a wing in
-///   the vertical plane (Beard and McLain 2012), cross-flow drag of 21 strips in the horizontal one
-///   with Hoerner's coefficient of a circle, 1.1977;
+/// - the inertia is that of the spheroid, the added mass is by Lamb's factors; the added inertia in
+///   roll is 0.3 times the rigid body's;
+/// - the linear damping of surge and sway decreases as the speed increases; lift and drag of the
+///   hull are those of a wing in the vertical plane (Beard and McLain 2012), and the cross-flow
+///   drag of 21 strips in the horizontal plane has Hoerner's coefficient of a circle, 1.1977;
 /// - the Coriolis terms of the added mass that couple surge with heave and sway with yaw and pitch
 ///   are left out, because there is no quadratic rotational damping to balance them;
-/// - fins by their lift slope, propeller by K_T and K_Q over the advance number; astern at the
-///   values of advance number 0.
+/// - fins have a lift slope, the propeller has K_T and K_Q over the advance number; astern they
+/// have
+///   their values at advance number 0.
 /// Valid for a neutrally buoyant hull in deep water, ahead, at angles of attack of a few degrees
 /// and speeds to about 2.6 m/s. Astern the angle of attack is near pi, where lift and drag are not
 /// valid; the terms are those of the public model.
@@ -43,8 +45,8 @@ class TorpedoModel {
   /// Lamb's added mass and inertia, surge to yaw [kg, kg m^2].
   const std::array<double, 6>& added_mass() const { return A_; }
 
-  /// Shaft speed of a steady straight course over its speed [rpm per m/s], without the linear
-  /// damping, which fades: thrust in the wake of the hull equals its drag.
+  /// Ratio of shaft speed to forward speed on a steady straight course [rpm per m/s], where thrust
+  /// in the wake of the hull equals its drag. Linear damping is neglected, as it is small there.
   double SteadyRpmPerSpeed() const;
   /// Angular acceleration per angle and squared speed [1/m^2].
   double RudderAuthority() const { return 0.5 * c_.length_m * rudder_ / M_[5]; }

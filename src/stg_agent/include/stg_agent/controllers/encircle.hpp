@@ -28,8 +28,8 @@ struct EncircleOptions {
   double depth_gain_ps = 0.06;     ///< climb rate per error of depth
   double climb_mps = 0.25;         ///< largest commanded climb rate
   double ring = 0.2;               ///< two circles, smaller and larger than d* by this share
-  double ring_team = 10.0;         ///< for teams of more AUVs than this
-  double ring_dodge = 0.5;         ///< `dodge` of these teams
+  double ring_team = 10.0;         ///< teams of more AUVs than this fly two circles
+  double ring_dodge = 0.5;         ///< value of `dodge` in such teams
   double smallest_circle = 0.5;    ///< smallest radius far below or above the target, share of d*
   double dodge = 1.5;           ///< largest sideways speed to avoid an AUV, share of the own speed
   double on_circle = 0.5;       ///< an AUV closer to the circle than this share of d* is on it

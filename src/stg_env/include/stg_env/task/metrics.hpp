@@ -41,8 +41,8 @@ struct SearchMetrics {
 /// Metrics of ranging by pings (sensing.ranging, localization.ranges.by).
 struct PingMetrics {
   double pings = 0.0;          ///< sent pings, per AUV
-  double loss = 0.0;           ///< share of them without an answer
-  double airtime_share = 0.0;  ///< share of the sending time of an AUV's modem, packets included
+  double loss = 0.0;           ///< share of the pings without an answer
+  double airtime_share = 0.0;  ///< share of the time in which a modem sends pings or packets
 };
 
 /// Further metrics of one whole episode in open water.
@@ -80,13 +80,13 @@ struct FieldMetrics {
 /// Metrics of one episode (Table S1, and further ones). Tail: the
 /// last tail_steps decisions. Means over AUVs and decisions unless named.
 struct EpisodeMetrics {
-  double episode_return = 0.0;         ///< sum over decisions and AUVs
-  double tail_distance = 0.0;          ///< d over the tail [m]
-  double tracking_error = 0.0;         ///< |d - d*| over the tail [m]
-  double lost_rate = 0.0;              ///< share of the tail with d > lost distance
-  double action_norm = 0.0;            ///< norm of tau / tau_max
-  double saturation_rate = 0.0;        ///< share of executed action components >= 0.95
-  double control_cost = 0.0;           ///< cost of Eq. 35
+  double episode_return = 0.0;   ///< sum over decisions and AUVs
+  double tail_distance = 0.0;    ///< d over the tail [m]
+  double tracking_error = 0.0;   ///< |d - d*| over the tail [m]
+  double lost_rate = 0.0;        ///< share of the tail in which the target is lost (SwarmState)
+  double action_norm = 0.0;      ///< norm of tau / tau_max
+  double saturation_rate = 0.0;  ///< share of executed action components >= 0.95
+  double control_cost = 0.0;     ///< cost of Eq. 35
   double communication_quality = 0.0;  ///< communication term of the reward
   double band_rate = 0.0;              ///< share of the tail inside [d_l, d_u]
   double colliding_pairs = 0.0;        ///< pairs in contact, per decision

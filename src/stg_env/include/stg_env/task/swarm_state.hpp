@@ -43,8 +43,8 @@ struct FieldState {
   T clearance_m = T(1e9);     ///< to the nearest obstacle
   T groundings = T(0.0);      ///< in this episode up to now, as the following
   T collisions = T(0.0);      ///< with obstacles
-  T received = T(0.0);        ///< packets that it received, and packets to it that were lost,
-  T missed = T(0.0);          ///< mean over the AUVs
+  T received = T(0.0);        ///< packets that an AUV received, mean over the AUVs
+  T missed = T(0.0);          ///< packets to an AUV that were lost, mean over the AUVs
   T modem_energy_j = T(0.0);  ///< electric, of its modem
   T airtime_s = T(0.0);       ///< for which its modem has sent
   T pings = T(-1.0);          ///< sent pings for ranging, mean over the AUVs; below 0:
