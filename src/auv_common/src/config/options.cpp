@@ -35,6 +35,10 @@ void ApplyPairs(const Table& table, const std::string& pairs, const std::string&
       throw UserError(where + key + ": " + *message);
     }
   }
+  for (const std::string& key : given) {
+    const Owner* owner = table.Find(key)->Unchosen();
+    if (owner != nullptr) throw UserError(where + key + ": " + owner->WhyUnread("this text"));
+  }
 }
 
 }  // namespace stg::config

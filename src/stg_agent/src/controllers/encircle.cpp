@@ -210,13 +210,16 @@ void Describe(EncircleOptions* o, config::Table* t) {
          "relative change of speed per angle off the middle between the AUVs ahead and behind");
   t->Add("spread-limit", &o->spread_limit, kFraction, "-",
          "largest relative change of speed by `spread`");
-  t->Add("clearance", &o->clearance_m, NonNegative(1e4), "m",
+  t->Own("spread-limit", {"spread", {"above 0"}, "spread", [o] {
+                            return std::vector<std::string>{o->spread_gain > 0.0 ? "above 0" : "0"};
+                          }});
+  t->Add("clearance", &o->clearance_m, config::Positive(1e4), "m",
          "horizontal distance at which the AUV passes other AUVs");
   t->Add("doubt", &o->doubt_mps, NonNegative(100), "m/s",
          "added to `clearance` per second of age of the other AUV's last packet");
-  t->Add("mate-clearance", &o->mate_clearance_m, NonNegative(1e4), "m",
+  t->Add("mate-clearance", &o->mate_clearance_m, config::Positive(1e4), "m",
          "the same distance for AUVs on the same circle");
-  t->Add("horizon", &o->horizon_s, NonNegative(1e4), "s",
+  t->Add("horizon", &o->horizon_s, config::Positive(1e4), "s",
          "closest approaches later than this are ignored");
   t->Add("layer", &o->layer_m, NonNegative(1e4), "m",
          "AUVs and obstacles farther above or below than this are ignored");

@@ -15,6 +15,11 @@ void Describe(PursuitOptions* o, config::Table* t) {
          "neighbours closer than this repel");
   t->Add("tangential-range", &o->tangential_range_m, NonNegative(1e3), "m",
          "closer to the target than this, repulsion only acts sideways");
+  for (const char* key : {"repulsion-range", "tangential-range"}) {
+    t->Own(key, {"repulsion", {"above 0"}, "repulsion", [o] {
+                   return std::vector<std::string>{o->repulsion_gain_per_s > 0.0 ? "above 0" : "0"};
+                 }});
+  }
   t->Add("feedforward", &o->feedforward, NonNegative(1e3), "-",
          "share of the target's velocity that is added");
   t->Add("approach-speed", &o->approach_speed_mps, NonNegative(1e3), "m/s",

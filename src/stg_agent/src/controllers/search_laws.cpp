@@ -152,6 +152,14 @@ void DescribeFound(FoundOptions* o, config::Table* t) {
          "factor on the worth of the present course during that approach");
   t->Add("team-range", &o->team_range_m, NonNegative(1e5), "m",
          "AUVs farther from the target than this have no place in the ring");
+  t->Own("team-range", {"form", {"places"}, "form", [o] {
+                          return std::vector<std::string>{o->form == 0.0 ? "circle" : "places"};
+                        }});
+  for (const char* key : {"close-reach", "close-replan", "close-keep"}) {
+    t->Own(key, {"certain", {"above 0"}, "certain", [o] {
+                   return std::vector<std::string>{o->certain_m > 0.0 ? "above 0" : "0"};
+                 }});
+  }
 }
 
 SearchLaw::SearchLaw(const FoundOptions& found)

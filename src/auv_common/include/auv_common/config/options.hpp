@@ -68,7 +68,7 @@ class OptionsByName {
 
 /// Fills the table from "key=value,key=value", the text after a thing's name in
 /// "pursuit:gain=2,cap=0.5". Throws UserError that quotes `whole` and names the key, also for a key
-/// that is given twice and for a missing pair.
+/// that is given twice, for one that has no effect beside the others, and for a missing pair.
 void ApplyPairs(const Table& table, const std::string& pairs, const std::string& whole);
 
 }  // namespace stg::config
