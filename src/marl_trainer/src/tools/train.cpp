@@ -131,6 +131,8 @@ int Train(int argc, char** argv, stg::learn::Communicator* ranks) {
   const stg::Scenario scenario = kept ? earlier->scenario
                                       : stg::LoadNamedScenario(stg::config::ScenarioFolder(),
                                                                scenario_name, condition, overrides);
+  stg::env::RefuseUnreadBy(setup.common.variant,
+                           stg::env::VariantScenario(scenario, setup.common.variant), overrides);
   stg::learn::Trainer::Options options;
   options.out = out;
   options.resume = resume;

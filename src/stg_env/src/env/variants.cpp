@@ -65,6 +65,20 @@ Scenario VariantScenario(const Scenario& scenario, Variant variant) {
   return s;
 }
 
+void RefuseUnreadBy(Variant variant, const Scenario& of_variant,
+                    const std::vector<std::string>& overrides) {
+  Scenario s = of_variant;  // a table refers to values that it may change
+  config::Table table;
+  Describe(&s, &table);
+  for (const std::string& text : overrides) {
+    const config::Field* field = table.Find(text.substr(0, text.find('=')));
+    const config::Owner* owner = field != nullptr ? field->Unchosen() : nullptr;
+    if (owner == nullptr) continue;
+    throw UserError("--set '" + text + "': " + field->path + ": " +
+                    owner->WhyUnread("the variant " + NameOf(variant)));
+  }
+}
+
 Scenario EvaluationScenario(const Scenario& scenario, Variant variant) {
   Scenario s = VariantScenario(scenario, variant);
   s.reward = scenario.reward;

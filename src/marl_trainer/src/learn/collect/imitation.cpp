@@ -30,6 +30,8 @@ void ImitationConfig::Describe(config::Table* table) {
 }
 
 void ImitationConfig::ValidateOrThrow() const {
+  RequireOption(controller.empty() || share > 0.0, "imitation-share",
+                "must be above 0 with --imitate; a training without imitation leaves both out");
   RequireOption(controller.empty() == (steps == 0), "imitation-steps",
                 "--imitation-steps and --imitate must be given together");
 }

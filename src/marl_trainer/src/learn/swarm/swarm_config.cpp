@@ -126,6 +126,8 @@ void SwarmConfig::ValidateOrThrow() const {
   RequireOption(!free_assignment || network == agent::EntityNetwork::kGraph, "free-assignment",
                 std::string("the network '") + agent::EntityNetworkName(network) +
                     "' does not choose a target; --network graph does");
+  RequireOption(!free_assignment || envs >= 32, "free-assignment",
+                "needs --envs 32 or more, because fewer have no waters with several targets");
   RequireOption(without != "edges" || network == agent::EntityNetwork::kGraph, "without",
                 std::string("the network '") + agent::EntityNetworkName(network) +
                     "' does not read edges; --network graph does");

@@ -50,6 +50,9 @@ SwarmTrainer::SwarmTrainer(std::vector<SwarmTask> mixture, std::vector<SwarmTask
   if (there && !options.resume) {
     throw UserError(options.out + ": holds a training; --resume continues it");
   }
+  if (options.resume && !options.start_from.empty()) {
+    throw UserError("--start-from: has no effect with --resume, which continues " + options.out);
+  }
   if (!there && options.resume) throw UserError(options.out + ": holds no training to resume");
   for (int k = 0; k < count; ++k) {
     shards_.push_back(std::make_unique<SwarmShard>(

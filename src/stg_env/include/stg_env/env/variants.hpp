@@ -30,6 +30,9 @@ void RefuseKeysOf(Variant variant, VariantKeys keys, const std::vector<std::stri
 
 /// The scenario in which a variant trains.
 Scenario VariantScenario(const Scenario& scenario, Variant variant);
+/// Throws UserError for an override "KEY=value" that has no effect in this scenario of a variant.
+void RefuseUnreadBy(Variant variant, const Scenario& of_variant,
+                    const std::vector<std::string>& overrides);
 /// VariantScenario with the reward of `scenario`.
 Scenario EvaluationScenario(const Scenario& scenario, Variant variant);
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "marl_trainer/learn/algorithms/madqn/madqn.hpp"
 
@@ -13,6 +15,10 @@ void MadqnConfig::Describe(config::Table* t) {
   t->Add("bin-power", &bin_power, {0.1, 10}, "-",
          "spacing of the bins in [-1, 1]: x^power of evenly spaced x; above 1, the bins are finer "
          "around zero");
+  t->Own("bin-power",
+         {"bins", {"more than three"}, "bins", [this] {
+            return std::vector<std::string>{bins > 3 ? "more than three" : "three or fewer"};
+          }});
   t->Add("heads", config::Enum(&heads, {"separate", "joint", "book"}), config::kNone, "-",
          "outputs of the network. separate: a value for each bin of each dimension; joint: a value "
          "for each of the bins^dimensions combinations; book: a value for each of the bins^3 "

@@ -1,5 +1,8 @@
 #include "marl_trainer/learn/algorithms/masac/masac_config.hpp"
 
+#include <string>
+#include <vector>
+
 #include "marl_trainer/learn/algorithms/masac/masac.hpp"
 
 namespace stg::learn {
@@ -13,6 +16,10 @@ void MasacConfig::Describe(config::Table* t) {
          "Adam's learning rate of the logarithm of this weight; 0: the weight is fixed");
   t->Add("target-entropy", &target_entropy, {-20, 1}, "-",
          "entropy that the weight is adjusted to, per AUV and action dimension in [-1, 1]");
+  t->Own("target-entropy",
+         {"weight of the entropy", {"adjusted"}, "alpha-lr", [this] {
+            return std::vector<std::string>{alpha_lr > 0.0 ? "adjusted" : "fixed"};
+          }});
   t->Add("min-log-std", &min_log_std, {-20, 2}, "-", "lower bound of log sigma before the squash");
   t->Add("max-log-std", &max_log_std, {-20, 2}, "-", "upper bound of log sigma before the squash");
 }

@@ -1,5 +1,8 @@
 #include "marl_trainer/learn/algorithms/matd3/matd3_config.hpp"
 
+#include <string>
+#include <vector>
+
 namespace stg::learn {
 
 Matd3Config::Matd3Config() {
@@ -20,6 +23,9 @@ void Matd3Config::Describe(config::Table* t) {
   t->Add("target-noise", &target_noise, {0, 10}, "-",
          "noise of the target policy's actions, as a share of the action's scale");
   t->Add("target-noise-clip", &target_noise_clip, {0, 10}, "-", "its bound");
+  t->Own("target-noise-clip", {"target noise", {"on"}, "target-noise", [this] {
+                                 return std::vector<std::string>{target_noise > 0.0 ? "on" : "off"};
+                               }});
 }
 
 }  // namespace stg::learn
