@@ -113,8 +113,8 @@ void Describe(AgentConfig* c, config::Table* t) {
   Describe(&c->stations, t);
 }
 
-void OwnAcrossSections(const dynamics::WorldConfig* world, const AgentConfig* agent,
-                       config::Table* t) {
+void OwnAcrossSections(const dynamics::WorldConfig* world, const acoustics::ChannelConfig* channel,
+                       const AgentConfig* agent, config::Table* t) {
   using Names = std::vector<std::string>;
   t->Own("task.lost_error_m", {"world", {"open water"}, "sea.open", [world] {
                                  return Names{world->sea.open ? "open water" : "walls"};
@@ -141,8 +141,24 @@ void OwnAcrossSections(const dynamics::WorldConfig* world, const AgentConfig* ag
     if (world->sensing.pings()) names.emplace_back("ping");
     return names;
   };
-  for (const char* key : {"clock_offset_std_s", "clock_drift_std_ppm", "timing_std_s",
-                          "late_probability", "late_max_s"}) {
+  // With pings a range is a difference of two times of one clock, so its offset has no effect.
+  t->Own("channel.physical.modem.clock_offset_std_s",
+         {"ranging", {"one_way"}, "localization.kind", ranging, {"localization.ranges.by"}, true});
+  // In slots, AUVs make a packet only when it can leave, and no packet waits.
+  const std::string listening = "csma";
+  t->Own("channel.physical.modem.queue", {"waiting packets",
+                                          {listening, "ping"},
+                                          "channel.access",
+                                          [channel, ranging] {
+                                            Names names{channel->access};
+                                            for (const std::string& name : ranging())
+                                              names.push_back(name);
+                                            return names;
+                                          },
+                                          {"sensing.ranging", "localization.ranges.by"},
+                                          true});
+  for (const char* key :
+       {"clock_drift_std_ppm", "timing_std_s", "late_probability", "late_max_s"}) {
     t->Own(std::string("channel.physical.modem.") + key,
            {"ranging",
             {"one_way", "ping"},
@@ -168,7 +184,7 @@ void Describe(AgentScenario* s, config::Table* t) {
   Describe(&s->world, t);
   Describe(&s->channel, t);
   Describe(&s->agent, t);
-  OwnAcrossSections(&s->world, &s->agent, t);
+  OwnAcrossSections(&s->world, &s->channel, &s->agent, t);
   DescribeBelieved(&s->agent, &s->agent_model, t);
 }
 

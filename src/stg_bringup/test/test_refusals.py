@@ -53,6 +53,7 @@ class Refusals(unittest.TestCase):
         for arguments, reason in (
                 (["bag:=a.bag"], "argument bag: has no effect without record:=true"),
                 (["explore:=true", "policy:=pursuit"], "'pursuit' draws no actions at random"),
+                (["overrides:=[critic.far_scale_m=5]"], "only a training reads critic"),
                 (["overrides:=[mode=truth]"], "so a run of nodes always has mode=acoustic")):
             with self.subTest(arguments):
                 process, _ = launch(self.folder, "medium.launch", "table:=false", *arguments,

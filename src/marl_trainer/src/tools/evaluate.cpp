@@ -172,7 +172,12 @@ int main(int argc, char** argv) {
     stg::env::RefuseKeysOf(variant, stg::env::VariantKeys::kWithoutReward, overrides);
     const stg::Scenario s = stg::env::EvaluationScenario(given, variant);
     stg::agent::Decider controller = stg::agent::MakeDecider(policy, s.model());
-    stg::env::RefuseUnread(controller, overrides);
+    stg::env::RefuseUnreadBy(variant, s, overrides);
+    stg::env::RefuseUnread(controller, s.agent.task, overrides);
+    if (record_episodes > episodes) {
+      throw stg::UserError("--record-episodes: there are only " + std::to_string(episodes) +
+                           " episodes (--episodes)");
+    }
     if (privileged) stg::env::ReadTruth(&controller, s.mode);
     CsvOutput table(csv);
     stg::WorkerPool pool(std::min(workers, episodes));

@@ -96,8 +96,8 @@ void Describe(AgentConfig* c, config::Table* t);
 
 /// Lets keys of one section belong to what another section chooses: the world, or the agents' way
 /// of measuring ranges. All sections must be in the table.
-void OwnAcrossSections(const dynamics::WorldConfig* world, const AgentConfig* agent,
-                       config::Table* t);
+void OwnAcrossSections(const dynamics::WorldConfig* world, const acoustics::ChannelConfig* channel,
+                       const AgentConfig* agent, config::Table* t);
 
 /// Adds the section `believed`: what an agent's model has instead of the true values. All other
 /// sections must be in the table.

@@ -75,6 +75,10 @@ void Describe(TrackConfig* c, config::Table* t) {
               return std::vector<std::string>{names[static_cast<int>(c->observers)]};
             }});
   }
+  t->Own("track.measurements.shear_memory_s",
+         {"shear", {"on"}, "track.measurements.shear_std_mps", [c] {
+            return std::vector<std::string>{c->shear_std_mps > 0.0 ? "on" : "off"};
+          }});
   for (const char* key : {"velocity_std_mps", "velocity_memory_s", "memory_s", "share_spacing_s",
                           "observers", "shear_std_mps", "shear_memory_s"}) {
     t->Moved(std::string("track.") + key, std::string("track.measurements.") + key);

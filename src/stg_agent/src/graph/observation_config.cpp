@@ -58,6 +58,22 @@ void Describe(ObservationConfig* c, config::Table* t) {
   for (const char* key : {"distance_scale_m", "lost_scale_steps"}) {
     t->Own(std::string("observation.") + key, tracking);
   }
+  t->Own("observation.link_available", graph);
+  const config::Owner derived{"derived numbers",
+                              {"tracking", "semantic", "graph"},
+                              "observation.tracking",
+                              [c] {
+                                std::vector<std::string> parts;
+                                if (c->tracking) parts.emplace_back("tracking");
+                                if (c->semantic) parts.emplace_back("semantic");
+                                if (c->graph) parts.emplace_back("graph");
+                                return parts;
+                              },
+                              {"observation.semantic", "observation.graph"},
+                              true};
+  for (const char* key : {"error_scale_m", "error_window", "quality_high", "quality_medium"}) {
+    t->Own(std::string("observation.") + key, derived);
+  }
   t->Moved("observation.link_radius_m", "channel.range_m");
 }
 

@@ -74,6 +74,16 @@ void Describe(LocalizationConfig* c, config::Table* t) {
          {"source of ranges", {"ping"}, "localization.ranges.by", by});
   t->Own("localization.ranges.clocks",
          {"source of ranges", {"one_way"}, "localization.ranges.by", by});
+  const std::string ranges = "localization.ranges.";
+  t->Own(ranges + "late_max_m",
+         {"late ranges", {"on"}, ranges + "late_share", [c] {
+            return std::vector<std::string>{c->late_share > 0.0 ? "on" : "off"};
+          }});
+  for (const char* key : {"shear_memory_s", "shear_depth_m"}) {
+    t->Own(ranges + key, {"shear", {"on"}, ranges + "shear_std_mps", [c] {
+                            return std::vector<std::string>{c->shear_std_mps > 0.0 ? "on" : "off"};
+                          }});
+  }
 }
 
 }  // namespace stg::agent

@@ -5,6 +5,7 @@
 #include "environment.hpp"
 #include "sources/acoustic_source.hpp"
 #include "stg_agent/agent/agent_view.hpp"
+#include "stg_agent/controllers/search_laws.hpp"
 #include "stg_agent/graph/observation_config.hpp"
 
 namespace stg::env {
@@ -80,11 +81,27 @@ void ReadTruth(agent::Decider* decider, InformationMode mode) {
   decider->privileged = true;
 }
 
-void RefuseUnread(const agent::Decider& decider, const std::vector<std::string>& overrides) {
+void RefuseUnread(const agent::Decider& decider, const agent::TaskConfig& task,
+                  const std::vector<std::string>& overrides) {
+  const bool entities = decider.entities != nullptr;
+  const bool searches = dynamic_cast<const agent::SearchLaw*>(decider.builtin.get()) != nullptr;
+  struct Reader {
+    const char* key;
+    bool reads;
+    const char* what;
+  };
+  const Reader readers[] = {
+      {"believed.sea.bottom_m", entities, "a policy over entities"},
+      {"track.search_cell_m", entities || searches, "a policy over entities or a search law"},
+      {"believed.sensing.range_m", entities || searches || decider.observes(),
+       "a policy or a search law"},
+      {"track.lost_std_m", entities || decider.observes() || task.free(),
+       "a policy, or the assignment free,"}};
   for (const std::string& text : overrides) {
-    if (text.rfind("believed.sea.bottom_m=", 0) == 0 && decider.entities == nullptr) {
-      throw UserError("'" + text + "': only a policy over entities reads this, and '" +
-                      decider.name + "' is none");
+    for (const Reader& r : readers) {
+      if (r.reads || text.rfind(std::string(r.key) + "=", 0) != 0) continue;
+      throw UserError("'" + text + "': only " + r.what + " reads this, but '" + decider.name +
+                      "' decides");
     }
     if (decider.observes() || text.rfind("observation.", 0) != 0) continue;
     const agent::ObservationReader reader = agent::ReaderOf(text.substr(0, text.find('=')));

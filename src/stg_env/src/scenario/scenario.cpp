@@ -60,7 +60,7 @@ void Describe(Scenario* s, config::Table* t) {
   t->AlsoReadIf("channel.model", [s, truth, eq5] { return truth() && s->channel.model == eq5; });
   // A metric of open water counts the decisions in which two AUVs are closer.
   t->AlsoReadIf("reward.separation_distance_m", [s] { return s->world.sea.open; });
-  agent::OwnAcrossSections(&s->world, &s->agent, t);
+  agent::OwnAcrossSections(&s->world, &s->channel, &s->agent, t);
   for (const std::string& term : task::TermsOfOpenWater()) {
     t->Own("reward.terms." + term,
            {"world", {"open water"}, "sea.open", [s] {

@@ -130,7 +130,7 @@ const Case kCases[] = {
      "channel.physical.modem.queue_length=4",
      "queue 'fifo'",
      "'newest' (channel.physical.modem.queue)",
-     {"channel.physical.modem.queue=fifo"}},
+     {"channel.access=csma", "channel.physical.modem.queue=fifo"}},
     {"deep",
      "channel.physical.modem.late_max_s=0.2",
      "late arrivals 'on'",

@@ -121,7 +121,7 @@ py::dict Evaluate(const std::string& policy, const Scenario& scenario, int episo
     const WithoutGil release;
     agent::Decider controller = agent::MakeDecider(policy, scenario.model());
     RefuseKeysOfTraining(overrides, "evaluate");
-    env::RefuseUnread(controller, overrides);
+    env::RefuseUnread(controller, scenario.agent.task, overrides);
     if (privileged) env::ReadTruth(&controller, scenario.mode);
     WorkerPool pool(std::min(workers, episodes));
     env::EvaluationOptions options;

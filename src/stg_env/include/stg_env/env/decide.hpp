@@ -22,7 +22,9 @@ void ReadTruth(agent::Decider* decider, InformationMode mode);
 
 /// Throws UserError for an override "KEY=value" that has no effect with this decider: of the
 /// numbers of the observation (agent::ReaderOf) a controller reads none and a policy over entities
-/// some; of the bottom's depth only the latter has a belief.
-void RefuseUnread(const agent::Decider& decider, const std::vector<std::string>& overrides);
+/// some; only the latter has a belief of the bottom's depth; and only search laws and policies over
+/// entities read a search map.
+void RefuseUnread(const agent::Decider& decider, const agent::TaskConfig& task,
+                  const std::vector<std::string>& overrides);
 
 }  // namespace stg::env
