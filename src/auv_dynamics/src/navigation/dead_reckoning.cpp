@@ -48,8 +48,8 @@ constexpr TimeNs kUnder = -1;
 /// The stated standard deviation follows the linear error model e += s d + h J d + c t + noise, h
 /// += walk; e, s, h and c are the errors of position, scale, heading and current, d is the way of a
 /// ping, and J a quarter turn. The covariances are propagated with it. A fix enters with the same
-/// gain on both axes; it does not correct scale and heading. The stated values and this gain use the
-/// standard deviations that the vehicle assumes for its instruments.
+/// gain on both axes; it does not correct scale and heading. The stated values and this gain use
+/// the standard deviations that the vehicle assumes for its instruments.
 class DeadReckoning : public NavigationSystem {
  public:
   explicit DeadReckoning(const NavigationSetup& setup)
