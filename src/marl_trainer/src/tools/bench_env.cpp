@@ -42,7 +42,7 @@ double Bench(const stg::Scenario& s, int envs, int workers, double seconds) {
   stg::WorkerPool pool(workers);
   pool.Run(workers, [&](int w, int) {
     stg::env::VectorEnvOptions o;
-    o.envs = std::max(1, envs / workers);
+    o.envs = envs / workers;
     o.first_env = w * o.envs;
     o.total_envs = workers * o.envs;
     stg::env::VectorEnv env(s, o);
@@ -77,7 +77,7 @@ int main(int argc, char** argv) {
   app.Add("--set", &overrides, "scenario override key.path=value, repeatable");
   app.Add("--seconds", &seconds, "time to measure for").ShowDefault();
   app.Add("--workers", &workers, "threads").From(1, 256).ShowDefault();
-  app.Add("--envs", &envs, "parallel environments").From(1, 100000).ShowDefault();
+  app.Add("--envs", &envs, "parallel environments, rounded down to a multiple of --workers").From(1, 100000).ShowDefault();
   app.Add("--scaling", &scaling, "also measure 4, 8, 20, 50 and 100 AUVs");
   app.AddPlugins();
   return app.Run(argc, argv, [&] {
@@ -89,6 +89,8 @@ int main(int argc, char** argv) {
       return stg::LoadNamedScenario(stg::config::ScenarioFolder(), scenario, condition, extra);
     };
     const stg::Scenario s = load({});
+    // Each worker has the same number of environments.
+    envs = workers * std::max(1, envs / workers);
     const double rate = Bench(s, envs, workers, seconds);
     nlohmann::json json = {
         {"scenario", scenario},         {"agents", s.run.agents},
