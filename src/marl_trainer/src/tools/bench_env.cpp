@@ -77,7 +77,9 @@ int main(int argc, char** argv) {
   app.Add("--set", &overrides, "scenario override key.path=value, repeatable");
   app.Add("--seconds", &seconds, "time to measure for").ShowDefault();
   app.Add("--workers", &workers, "threads").From(1, 256).ShowDefault();
-  app.Add("--envs", &envs, "parallel environments, rounded down to a multiple of --workers").From(1, 100000).ShowDefault();
+  app.Add("--envs", &envs, "parallel environments, rounded down to a multiple of --workers")
+      .From(1, 100000)
+      .ShowDefault();
   app.Add("--scaling", &scaling, "also measure 4, 8, 20, 50 and 100 AUVs");
   app.AddPlugins();
   return app.Run(argc, argv, [&] {
