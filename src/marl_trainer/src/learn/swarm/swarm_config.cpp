@@ -126,8 +126,6 @@ void SwarmConfig::ValidateOrThrow() const {
   RequireOption(!free_assignment || network == agent::EntityNetwork::kGraph, "free-assignment",
                 std::string("the network '") + agent::EntityNetworkName(network) +
                     "' does not choose a target; --network graph does");
-  RequireOption(!free_assignment || envs >= 32, "free-assignment",
-                "needs --envs 32 or more, because fewer have no waters with several targets");
   RequireOption(without != "edges" || network == agent::EntityNetwork::kGraph, "without",
                 std::string("the network '") + agent::EntityNetworkName(network) +
                     "' does not read edges; --network graph does");
@@ -138,6 +136,8 @@ void SwarmConfig::ValidateOrThrow() const {
 std::vector<SwarmTask> FieldMixture(const std::string& folder, const std::string& scenario,
                                     const SwarmConfig& config, int count) {
   config.ValidateOrThrow();
+  RequireOption(!config.free_assignment || count > kFreeWaters[0].first, "free-assignment",
+                "needs --envs 32 or more, because fewer have no waters with several targets");
   std::vector<SwarmTask> mixture;
   for (int k = 0; k < count; ++k) {
     const Waters waters = WatersAt(k % kWatersCount, config.free_assignment);

@@ -144,6 +144,7 @@ TEST_F(SwarmTraining, TargetsAreChosenInSomeWatersByTheNetworkThatChooses) {
   const std::string folder = config::ScenarioFolder();
   EXPECT_THROW(FieldMixture(folder, "field", config_, 16), UserError) << "pool does not choose";
   config_.network = agent::EntityNetwork::kGraph;
+  EXPECT_THROW(FieldMixture(folder, "field", config_, 3), UserError) << "nothing to choose";
   int free = 0;
   for (const SwarmTask& task : FieldMixture(folder, "field", config_, 16)) {
     free += task.scenario.agent.task.free() ? 1 : 0;
