@@ -56,6 +56,15 @@ TEST(Registry, NamesComeInTheOrderOfRegistration) {
   EXPECT_FALSE(shapes.Has("bl"));
 }
 
+TEST(Registry, KnowsWhichThingsAreTheSuitesOwn) {
+  ShapeRegistry shapes = Shapes();
+  shapes.Add("other", MakeShape<Disc>);
+  EXPECT_TRUE(shapes.IsOwn("square"));
+  EXPECT_TRUE(shapes.IsOwn("disc"));
+  EXPECT_FALSE(shapes.IsOwn("other"));
+  EXPECT_FALSE(shapes.IsOwn("none"));
+}
+
 TEST(Registry, UnknownNameListsTheNamesAndSuggestsTheNearest) {
   const ShapeRegistry shapes = Shapes();
   EXPECT_EQ(MessageOf(shapes, "sqare"),

@@ -119,6 +119,8 @@ class Plugins(unittest.TestCase):
             for speed in (0.0, 0.05)
         )
         self.assertNotEqual(slow, fast)
+        # A controller of somebody else may read any number of the observation.
+        evaluate("--plugin", library("orbit"), "--policy", "orbit", "--set", "observation.error_scale_m=2")
         term = ("--plugin", library("station_keeping"))
         weight = ("--set", "reward.terms.station_keeping.weight=0.2")
         self.assertLess(evaluate(*term, *weight)["return"], evaluate()["return"])

@@ -74,6 +74,7 @@ class Registry {
   /// @param kind what is registered, for messages, e.g. "target motion"
   Registry(std::string kind, std::vector<Entry> entries) : kind_(std::move(kind)) {
     for (Entry& entry : entries) Add(std::move(entry));
+    own_ = entries_.size();
   }
   Registry(const Registry&) = delete;
   Registry& operator=(const Registry&) = delete;
@@ -111,6 +112,11 @@ class Registry {
   }
 
   bool Has(const std::string& name) const { return Find(name) != nullptr; }
+  /// True for a thing in the suite's own list; false for one that a program or plugin added.
+  bool IsOwn(const std::string& name) const {
+    const Entry* entry = Find(name);
+    return entry != nullptr && entry < entries_.data() + own_;
+  }
 
   /// Names in the order in which they were added.
   std::vector<std::string> Names() const {
@@ -163,6 +169,7 @@ class Registry {
 
   std::string kind_;
   std::vector<Entry> entries_;
+  std::size_t own_ = 0;  ///< number of the first entries that are the suite's own
 };
 
 }  // namespace stg

@@ -83,6 +83,9 @@ void ReadTruth(agent::Decider* decider, InformationMode mode) {
 
 void RefuseUnread(const agent::Decider& decider, const agent::TaskConfig& task,
                   const std::vector<std::string>& overrides) {
+  // A controller that somebody else added may read anything.
+  const std::string name = decider.name.substr(0, decider.name.find(':'));
+  if (decider.builtin != nullptr && !agent::Controllers().IsOwn(name)) return;
   const bool entities = decider.entities != nullptr;
   const bool searches = dynamic_cast<const agent::SearchLaw*>(decider.builtin.get()) != nullptr;
   struct Reader {
