@@ -155,13 +155,13 @@ def section_table(study, rows):
 def trained_table(study):
     """The options in which trainings of pilots differ from each other."""
     lines = [
-        [name, ", ".join(f"`--{option} {cell_of(value)}`" for option, value in pilot.trained.items())]
+        [name, ", ".join(f"`--{option} {option_text(value)}`" for option, value in pilot.trained.items())]
         for name, pilot in study.pilots.items() if pilot.trained
     ]  # fmt: skip
     return markdown(["Flown by", "Trained with"], lines)
 
 
-def cell_of(value):
+def option_text(value):
     """An option's value as on a command line."""
     return str(value).lower() if isinstance(value, bool) else f"{value:g}" if isinstance(value, float) else value
 
