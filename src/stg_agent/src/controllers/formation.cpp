@@ -20,7 +20,9 @@ T Formation::Slot(const ControllerInput<T>& in, const Level<T>& v_T) const {
   const Knowledge<T>& k = in.knowledge;
   const Vec3<T> p_WT = k.p_WB + k.r_BT_W;
   const bool course = options.slots == Slots::kCourse;
-  const T reference = course ? Atan2(v_T.y, v_T.x) : zero;
+  // A target that rests has no course; the angle of a vector of length zero is not defined.
+  const T east = Select(v_T.x == zero && v_T.y == zero, one, v_T.x);
+  const T reference = course ? Atan2(v_T.y, east) : zero;
   const auto from_astern = [&](const T& bearing) {
     const T a = bearing - reference + T(kPi);
     return a - T(kFullTurn) * Floor(a * T(1.0 / kFullTurn));

@@ -115,6 +115,17 @@ TEST(Formation, AHeapBecomesARingWithoutAnybodyPassingAnother) {
   }
 }
 
+TEST(Formation, HasPlacesAroundATargetThatRests) {
+  FormationOptions o;
+  o.weave_below_mps = 0.0;
+  for (const Slots slots : {Slots::kFree, Slots::kCourse}) {
+    o.slots = slots;
+    const Level<double> v =
+        Velocity(Sea(), o, Ring({0.0, 90.0, 180.0, 270.0}, 90.0), {0.0, 0.0}, 0);
+    EXPECT_TRUE(std::isfinite(v.x) && std::isfinite(v.y));
+  }
+}
+
 TEST(Formation, KeepsOffTheChartAsEncircleDoes) {
   AgentModel s = Sea();
   s.control.autopilot.max_turn_rate_radps = 0.1;
