@@ -10,6 +10,11 @@
 namespace stg::nodes {
 namespace {
 
+std::string ParameterOf(std::string option) {
+  std::replace(option.begin(), option.end(), '-', '_');
+  return option;
+}
+
 /// The value of a parameter as text of a command line.
 std::string TextOf(const std::string& name, XmlRpc::XmlRpcValue value) {
   using Value = XmlRpc::XmlRpcValue;
@@ -43,8 +48,7 @@ std::vector<std::string> LoadTrainParameters(const config::Table& options,
                                              const std::vector<std::string>& except) {
   std::vector<std::string> given;
   for (const config::Field& option : options.fields()) {
-    std::string name = option.path;
-    std::replace(name.begin(), name.end(), '-', '_');
+    const std::string name = ParameterOf(option.path);
     // Only private parameters, because `seed`, for example, also exists for the world.
     XmlRpc::XmlRpcValue value;
     const bool skipped = std::find(except.begin(), except.end(), option.path) != except.end();
@@ -57,11 +61,13 @@ std::vector<std::string> LoadTrainParameters(const config::Table& options,
   for (const std::string& path : given) {
     const config::Owner* owner = options.Find(path)->Unchosen();
     if (owner == nullptr) continue;
-    std::string name = path;
-    std::replace(name.begin(), name.end(), '-', '_');
-    throw UserError("parameter " + name + ": " + owner->WhyUnread("this node"));
+    throw UserError("parameter " + ParameterOf(path) + ": " + owner->WhyUnread("this node"));
   }
   return given;
+}
+
+void RefuseTrainParameters(const std::vector<std::string>& options, const std::string& why) {
+  for (const std::string& option : options) RefuseParameter(ParameterOf(option), why);
 }
 
 std::vector<std::string> LoadBagNames() { return TextsParameter("bags"); }

@@ -15,6 +15,10 @@ namespace stg::nodes {
 std::vector<std::string> LoadTrainParameters(const config::Table& options,
                                              const std::vector<std::string>& except = {});
 
+/// Throws UserError if one of these options, with the names of the command line, is a private
+/// parameter. @param why it has no effect
+void RefuseTrainParameters(const std::vector<std::string>& options, const std::string& why);
+
 /// The bags to train on: a list of texts, or one text with names separated by spaces.
 std::vector<std::string> LoadBagNames();
 

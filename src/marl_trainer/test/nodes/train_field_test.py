@@ -91,6 +91,11 @@ class TrainField(unittest.TestCase):
         for name in ("critic_updates", "log_std"):
             text = self.refused("_network:=layers", f"_{name}:=1")
             self.assertIn(f"parameter {name}: belongs to the networks pool and graph", text)
+        for network, name in (("layers", "lr_final"), ("layers", "imitate"), (self.network, "average")):
+            text = self.refused(f"_network:={network}", f"_{name}:=0.5")
+            self.assertIn(f"parameter {name}: only a training in environments reads it", text)
+        text = self.refused("_network:=layers", f"_start_policy:={self.policies / 'medium.onnx'}", "_activation:=tanh")
+        self.assertIn("parameter activation: the policy to start from (start_policy) has its own", text)
         text = self.refused("_open_water:=false")
         self.assertIn("parameter open_water: must be true for the scenario", text)
         text = self.refused(f"_network:={self.network}", "_epoch:=3")

@@ -14,6 +14,9 @@
 namespace stg::nodes {
 namespace {
 
+const char* const kOnlyInEnvironments =
+    "only a training in environments reads it, and this node learns from flights that it records";
+
 /// auto: a network over entities in open water and for a policy over entities, otherwise layers.
 std::string NetworkName(const Scenario& scenario, bool live, const std::string& start) {
   std::string network = TextParameter("network", "auto");
@@ -35,6 +38,15 @@ std::unique_ptr<OnlineLearner> MakeLayersLearner(const Scenario& scenario,
   }
   for (const char* name : {"critic_updates", "log_std", "learning_rate", "last_learning_rate"}) {
     RefuseParameter(name, "belongs to the networks pool and graph, but the network is layers");
+  }
+  RefuseTrainParameters(
+      {"steps", "envs", "horizon", "stagger", "start-from", "validation-interval",
+       "validation-episodes", "checkpoint-interval", "lr-final", "imitate", "imitation-steps",
+       "imitation-share", "imitation-focus", "privileged-teacher", "wall-units"},
+      kOnlyInEnvironments);
+  if (!start.empty()) {
+    RefuseTrainParameters({"actor-hidden", "activation", "observation-clip"},
+                          "the policy to start from (start_policy) has its own");
   }
   learn::RecordedTrainer::Options options;
   options.out = TextParameter("out", "");
@@ -61,6 +73,10 @@ std::unique_ptr<OnlineLearner> MakeEntityLearner(const Scenario& scenario,
   const agent::EntityNetwork network_of_start = config.network;
   const agent::EntityAction action_of_start = config.action;
   if (!network.empty()) config.network = agent::EntityNetworkNamed(network);
+  RefuseTrainParameters({"steps", "envs", "horizon", "segment", "episode-steps", "free-assignment",
+                         "leaving", "noise-time", "average", "last-learning-rate", "last-entropy",
+                         "validation-interval", "validation-episodes"},
+                        kOnlyInEnvironments);
   config::Table table;
   config.Describe(&table);
   learn::RecordedSwarmTrainer::Options options;
