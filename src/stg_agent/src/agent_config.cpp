@@ -6,6 +6,8 @@
 
 #include "acoustic_channel/models/propagation_model.hpp"
 #include "auv_common/config/value.hpp"
+#include "auv_common/names.hpp"
+#include "auv_dynamics/navigation/navigation_system.hpp"
 #include "stations/auv_pings.hpp"
 #include "stg_agent/estimation/target_filter.hpp"
 #include "stg_agent/packet/packet.hpp"
@@ -132,6 +134,13 @@ void OwnAcrossSections(const dynamics::WorldConfig* world, const acoustics::Chan
                                                     "sea.terrain",
                                                     shadows,
                                                     {"sea.spheres", "sea.cylinders", "sea.open"}});
+  // Perfect navigation makes no errors.
+  const Names erring = Without(dynamics::NavigationSystems().Names(), {"perfect"});
+  for (const char* key : {"observers", "shear_std_mps", "shear_memory_s"}) {
+    t->Own(std::string("track.measurements.") + key,
+           {"navigation system", erring, "navigation.kind",
+            [world] { return Names{world->navigation.kind}; }});
+  }
   // Agents use the times of their modems only if they measure ranges with them.
   const auto ranging = [world, agent] {
     Names names;
@@ -177,6 +186,16 @@ void DescribeBelieved(const AgentConfig* agent, config::Differences* differences
             const bool map = agent->track.search_cell_m > 0.0;
             return std::vector<std::string>{map ? "with a map" : "without a map"};
           }});
+  // A ping needs no knowledge of the errors of clocks.
+  t->Own("believed.channel.physical.modem.clock_drift_std_ppm",
+         {"ranging",
+          {"one_way"},
+          "localization.kind",
+          [agent] {
+            const bool one_way = agent->localization.by == RangesBy::kOneWay;
+            return std::vector<std::string>{one_way ? "one_way" : "ping"};
+          },
+          {"localization.ranges.by"}});
 }
 
 void Describe(AgentScenario* s, config::Table* t) {

@@ -26,7 +26,8 @@ void Describe(SeaConfig* c, config::Table* t) {
                  "bottom of open water: flat, or a bathymetry: a FILE.nc, or the NAME of a file "
                  "NAME.nc that is shipped or in a folder of $STG_TERRAINS");
   t->AddOptional("bottom_m", &c->bottom_m, "120.0", Positive(12000), "m",
-                 "depth of the flat bottom");
+                 "depth of the flat bottom; over a terrain, the depth that policies over entities "
+                 "take the bottom to have");
   t->AddOptional("latitude_deg", &c->latitude_deg, "0.0", Within(-90, 90), "deg, WGS 84",
                  "latitude of the world's origin");
   t->AddOptional("longitude_deg", &c->longitude_deg, "0.0", Within(-360, 360), "deg, WGS 84",

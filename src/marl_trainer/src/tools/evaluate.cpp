@@ -17,6 +17,7 @@
 #include "stg_agent/controllers/controller.hpp"
 #include "stg_env/env/evaluation.hpp"
 #include "stg_env/env/seed_blocks.hpp"
+#include "stg_env/env/unread_keys.hpp"
 #include "stg_env/env/variants.hpp"
 #include "stg_env/record/recorder.hpp"
 #include "stg_env/record/scene.hpp"
@@ -173,7 +174,7 @@ int main(int argc, char** argv) {
     const stg::Scenario s = stg::env::EvaluationScenario(given, variant);
     stg::agent::Decider controller = stg::agent::MakeDecider(policy, s.model());
     stg::env::RefuseUnreadBy(variant, s, overrides);
-    stg::env::RefuseUnread(controller, s.agent.task, overrides);
+    stg::env::RefuseUnread(controller, s, overrides);
     if (record_episodes > episodes) {
       throw stg::UserError("--record-episodes: there are only " + std::to_string(episodes) +
                            " episodes (--episodes)");

@@ -13,6 +13,7 @@
 #include "auv_common/stop_signals.hpp"
 #include "marl_trainer/learn/run/trainer.hpp"
 #include "ranks/mpi.hpp"
+#include "stg_env/env/unread_keys.hpp"
 #include "stg_env/scenario/scenario.hpp"
 
 namespace {
@@ -131,8 +132,11 @@ int Train(int argc, char** argv, stg::learn::Communicator* ranks) {
   const stg::Scenario scenario = kept ? earlier->scenario
                                       : stg::LoadNamedScenario(stg::config::ScenarioFolder(),
                                                                scenario_name, condition, overrides);
-  stg::env::RefuseUnreadBy(setup.common.variant,
-                           stg::env::VariantScenario(scenario, setup.common.variant), overrides);
+  const stg::Scenario trained = stg::env::VariantScenario(scenario, setup.common.variant);
+  stg::env::RefuseUnreadBy(setup.common.variant, trained, overrides);
+  const stg::learn::ImitationConfig* const imitation = setup.own->Imitation();
+  stg::env::RefuseUnreadInTraining(imitation != nullptr ? imitation->controller : "", trained,
+                                   overrides);
   stg::learn::Trainer::Options options;
   options.out = out;
   options.resume = resume;

@@ -5,8 +5,7 @@
 #include "environment.hpp"
 #include "sources/acoustic_source.hpp"
 #include "stg_agent/agent/agent_view.hpp"
-#include "stg_agent/controllers/search_laws.hpp"
-#include "stg_agent/graph/observation_config.hpp"
+#include "stg_agent/controllers/idle.hpp"
 
 namespace stg::env {
 namespace {
@@ -78,41 +77,10 @@ void ReadTruth(agent::Decider* decider, InformationMode mode) {
         "privileged: the scenario has the mode truth, in which each controller reads true states "
         "anyway");
   }
-  decider->privileged = true;
-}
-
-void RefuseUnread(const agent::Decider& decider, const agent::TaskConfig& task,
-                  const std::vector<std::string>& overrides) {
-  // A controller that somebody else added may read anything.
-  const std::string name = decider.name.substr(0, decider.name.find(':'));
-  if (decider.builtin != nullptr && !agent::Controllers().IsOwn(name)) return;
-  const bool entities = decider.entities != nullptr;
-  const bool searches = dynamic_cast<const agent::SearchLaw*>(decider.builtin.get()) != nullptr;
-  struct Reader {
-    const char* key;
-    bool reads;
-    const char* what;
-  };
-  const Reader readers[] = {
-      {"believed.sea.bottom_m", entities, "a policy over entities"},
-      {"track.search_cell_m", entities || searches, "a policy over entities or a search law"},
-      {"believed.sensing.range_m", entities || searches || decider.observes(),
-       "a policy or a search law"},
-      {"track.lost_std_m", entities || decider.observes() || task.free(),
-       "a policy, or the assignment free,"}};
-  for (const std::string& text : overrides) {
-    for (const Reader& r : readers) {
-      if (r.reads || text.rfind(std::string(r.key) + "=", 0) != 0) continue;
-      throw UserError("'" + text + "': only " + r.what + " reads this, but '" + decider.name +
-                      "' decides");
-    }
-    if (decider.observes() || text.rfind("observation.", 0) != 0) continue;
-    const agent::ObservationReader reader = agent::ReaderOf(text.substr(0, text.find('=')));
-    if (reader == agent::ObservationReader::kTask) continue;
-    if (reader == agent::ObservationReader::kPolicy && decider.entities != nullptr) continue;
-    throw UserError("'" + text + "': a policy reads this number of the observation, but '" +
-                    decider.name + "' does not");
+  if (dynamic_cast<const agent::ControllerOf<agent::Idle>*>(decider->builtin.get()) != nullptr) {
+    throw UserError("privileged: '" + decider->name + "' reads no states");
   }
+  decider->privileged = true;
 }
 
 void Decide(const agent::Decider& c, const VectorEnv& env, const float* observations,

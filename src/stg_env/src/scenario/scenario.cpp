@@ -78,7 +78,13 @@ void Describe(Scenario* s, config::Table* t) {
           },
           {"sea.cylinders"},
           true});
+  // Estimates of true states have no errors.
+  for (const char* key : {"good_m", "fall_m"}) {
+    t->Own(std::string("reward.terms.estimate.") + key, acoustic);
+  }
   agent::DescribeBelieved(&s->agent, &s->agent_model, t);
+  // In mode `truth` no estimate needs the depth of a target.
+  t->Own("believed.sea.target_depth_m", acoustic);
 }
 
 std::optional<config::Violation> FindConflict(const Scenario& s) {

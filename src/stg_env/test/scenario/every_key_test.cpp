@@ -13,9 +13,11 @@
 #include "env/env_fixture.hpp"
 #include "scenario/scenario_fields.hpp"
 #include "stg_env/env/decide.hpp"
+#include "stg_env/env/unread_keys.hpp"
 
 /// Nothing that a user sets passes without effect: each key that a scenario accepts changes the
-/// flight of a built-in controller, or it stands in a list below, with the reason.
+/// flight of a built-in controller, or it stands in a list below, with the reason. Each key that
+/// the program `evaluate` accepts with this controller changes its metrics.
 namespace stg::env {
 namespace {
 
@@ -27,7 +29,11 @@ struct Flown {
   std::vector<std::string> overrides;
 };
 
-/// All that a flight shows: observations, the critic's state, rewards and metrics.
+/// What is compared: observations, the critic's state, rewards and metrics, as a training reads
+/// them, or only the metrics that `evaluate` prints.
+enum class Shown { kAll, kMetrics };
+
+/// A hash of what a flight shows.
 class Record {
  public:
   template <class T>
@@ -47,7 +53,7 @@ class Record {
   std::uint64_t hash_ = 14695981039346656037ULL;
 };
 
-std::uint64_t Fly(const Scenario& s, const Flown& flown) {
+std::uint64_t Fly(const Scenario& s, const Flown& flown, Shown shown) {
   VectorEnvOptions options;
   options.seed = s.run.seed;
   TestEnv env(s, options);
@@ -55,16 +61,17 @@ std::uint64_t Fly(const Scenario& s, const Flown& flown) {
   std::vector<double> actions(
       static_cast<std::size_t>(env.envs() * env.agents() * env.action_size()));
   Record record;
+  const bool all = shown == Shown::kAll;
   env.Reset();
   do {
-    record.Add(env.memory.observations);
-    record.Add(env.memory.states);
+    if (all) record.Add(env.memory.observations);
+    if (all) record.Add(env.memory.states);
     Decide(decider, env, env.memory.observations.data(), actions.data());
     env.VectorEnv::Step(actions.data(), env.memory.arrays());
-    record.Add(env.memory.rewards);
+    if (all) record.Add(env.memory.rewards);
   } while (!env.truncated());
-  record.Add(env.memory.final_observations);
-  record.Add(env.memory.final_states);
+  if (all) record.Add(env.memory.final_observations);
+  if (all) record.Add(env.memory.final_states);
   for (int e = 0; e < env.envs(); ++e) record.Add(env.metrics(e));
   return record.hash();
 }
@@ -123,7 +130,7 @@ std::vector<std::string> OthersOf(const config::Field& field) {
 /// What changing a key does.
 enum class Effect { kNone, kSome, kUntried };
 
-Effect EffectOf(const std::string& path, const Scenario& s, const Flown& flown,
+Effect EffectOf(const std::string& path, const Scenario& s, const Flown& flown, Shown shown,
                 std::uint64_t unchanged) {
   Scenario original = s;
   config::Table table;
@@ -133,13 +140,18 @@ Effect EffectOf(const std::string& path, const Scenario& s, const Flown& flown,
   for (const std::string& value : OthersOf(*table.Find(path))) {
     if (value == own) continue;  // e.g. 1.7 times zero
     Scenario changed = s;
+    const std::vector<std::string> overrides = {path + "=" + value};
     try {
-      config::Override(&changed, {path + "=" + value});
+      config::Override(&changed, overrides);
       changed.ValidateOrThrow();
-      if (Fly(changed, flown) != unchanged) return Effect::kSome;
+      if (shown == Shown::kMetrics) {
+        RefuseKeysOfTraining(overrides, "evaluate");
+        RefuseUnread(agent::MakeDecider(flown.controller, s.model()), changed, overrides);
+      }
+      if (Fly(changed, flown, shown) != unchanged) return Effect::kSome;
       ++tried;
     } catch (const UserError&) {
-      continue;  // this value is not allowed, or contradicts another key
+      continue;  // not allowed, contradicts another key, or this controller does not read it
     }
   }
   return tried == 0 ? Effect::kUntried : Effect::kNone;
@@ -189,12 +201,12 @@ bool Excepted(const std::string& path) {
 }
 
 /// The keys that a scenario accepts, although they change nothing in any of these flights of it.
-std::vector<std::string> KeysWithoutEffect(const std::vector<Flown>& flights) {
+std::vector<std::string> KeysWithoutEffect(const std::vector<Flown>& flights, Shown shown) {
   std::vector<std::string> left;
   for (const Flown& flown : flights) {
     Scenario s = Short(Shipped(flown.scenario, "nominal", flown.overrides), flown.decisions);
     s.run.time.tail_steps = flown.decisions / 2;
-    const std::uint64_t unchanged = Fly(s, flown);
+    const std::uint64_t unchanged = Fly(s, flown, shown);
     if (&flown == &flights.front()) {
       for (const config::Field& field : ScenarioFields(&s)) {
         if (field.Unchosen() == nullptr && !Excepted(field.path)) left.push_back(field.path);
@@ -202,7 +214,7 @@ std::vector<std::string> KeysWithoutEffect(const std::vector<Flown>& flights) {
     }
     left.erase(std::remove_if(left.begin(), left.end(),
                               [&](const std::string& key) {
-                                return EffectOf(key, s, flown, unchanged) != Effect::kNone;
+                                return EffectOf(key, s, flown, shown, unchanged) != Effect::kNone;
                               }),
                left.end());
   }
@@ -216,9 +228,26 @@ std::string Lines(const std::vector<std::string>& keys) {
 }
 
 void ExpectThatEveryKeyMatters(const std::vector<Flown>& flights) {
-  const auto left = KeysWithoutEffect(flights);
+  const auto left = KeysWithoutEffect(flights, Shown::kAll);
   EXPECT_TRUE(left.empty()) << flights.front().scenario
                             << " accepts these keys, but they have no effect:" << Lines(left);
+}
+
+/// The same for the metrics of each of two controllers alone.
+/// @param rare keys of events that do not happen in these flights
+void ExpectThatEveryKeyMattersToLaws(std::vector<Flown> flights,
+                                     const std::vector<std::string>& rare) {
+  for (const char* law : {"pursuit", "encircle"}) {
+    for (Flown& flown : flights) flown.controller = law;
+    auto left = KeysWithoutEffect(flights, Shown::kMetrics);
+    left.erase(std::remove_if(left.begin(), left.end(),
+                              [&](const std::string& key) {
+                                return std::find(rare.begin(), rare.end(), key) != rare.end();
+                              }),
+               left.end());
+    EXPECT_TRUE(left.empty()) << "evaluate accepts these keys of " << flights.front().scenario
+                              << " with " << law << ", but they have no effect:" << Lines(left);
+  }
 }
 
 /// Far from the target, near the walls, and near each other.
@@ -244,38 +273,41 @@ std::vector<std::string> Near(const std::string& depth, const std::string& lost_
           "task.lost_distance_m=" + lost_m};
 }
 
-TEST(EveryKey, OfMediumMatters) {
-  ExpectThatEveryKeyMatters({{"medium", "pursuit", 30, {}},
-                             {"medium", "pursuit", 150, kFar},
-                             {"medium", "pursuit", 150, kRough}});
+/// The flights of a scenario, with the controller that shows most of its keys.
+std::vector<Flown> FlightsOf(const std::string& scenario) {
+  if (scenario == "utracking") {
+    return {{scenario, "encircle", 12, {}},
+            {scenario, "encircle", 12, {"task.lost_distance_m=181"}},
+            {scenario, "pursuit", 30, Near("[100, 118]", "181")}};
+  }
+  if (scenario == "field" || scenario == "deep") {
+    const bool deep = scenario == "deep";
+    return {{scenario, "encircle", deep ? 60 : 40, {}},
+            {scenario, "encircle", 80, kLossy},
+            {scenario, "pursuit", 60, Near(deep ? "[980, 998]" : "[100, 118]", "121")}};
+  }
+  return {{scenario, "pursuit", 30, {}},
+          {scenario, "pursuit", 150, kFar},
+          {scenario, "pursuit", 150, kRough}};
 }
 
-TEST(EveryKey, OfMediumReleaseMatters) {
-  ExpectThatEveryKeyMatters({{"medium_release", "pursuit", 30, {}},
-                             {"medium_release", "pursuit", 150, kFar},
-                             {"medium_release", "pursuit", 150, kRough}});
+class EveryKey : public testing::TestWithParam<const char*> {};
+
+TEST_P(EveryKey, Matters) { ExpectThatEveryKeyMatters(FlightsOf(GetParam())); }
+
+TEST_P(EveryKey, ThatEvaluateTakesMatters) {
+  ExpectThatEveryKeyMattersToLaws(
+      FlightsOf(GetParam()),
+      {"reward.w_too_close", "vehicle.radius_m", "contact.stiffness",
+       "channel.physical.water.surface_z_m", "channel.physical.water.depth_m"});
 }
 
-TEST(EveryKey, OfFieldMatters) {
-  ExpectThatEveryKeyMatters({{"field", "encircle", 40, {}},
-                             {"field", "encircle", 80, kLossy},
-                             {"field", "pursuit", 60, Near("[100, 118]", "121")}});
-}
-
-TEST(EveryKey, OfUtrackingMatters) {
-  ExpectThatEveryKeyMatters({{"utracking", "encircle", 12, {}},
-                             {"utracking", "encircle", 12, {"task.lost_distance_m=181"}},
-                             {"utracking", "pursuit", 30, Near("[100, 118]", "181")}});
-}
-
-TEST(EveryKey, OfDeepMatters) {
-  ExpectThatEveryKeyMatters({{"deep", "encircle", 60, {}},
-                             {"deep", "encircle", 80, kLossy},
-                             {"deep", "pursuit", 60, Near("[980, 998]", "121")}});
-}
+INSTANTIATE_TEST_SUITE_P(Of, EveryKey,
+                         testing::Values("medium", "medium_release", "field", "utracking", "deep"),
+                         [](const auto& info) { return std::string(info.param); });
 
 /// A list of exceptions must not hide keys of tomorrow: each of its keys exists.
-TEST(EveryKey, OfTheExceptionsExists) {
+TEST(EveryKeyOfTheExceptions, Exists) {
   std::vector<std::string> keys;
   for (const Exception& e : kExceptions) keys.push_back(e.key);
   Scenario scenario;

@@ -11,6 +11,7 @@
 #include "stg_agent/controllers/controller.hpp"
 #include "stg_agent/policy/policy.hpp"
 #include "stg_env/env/evaluation.hpp"
+#include "stg_env/env/unread_keys.hpp"
 #include "without_gil.hpp"
 
 namespace stg::python {
@@ -121,7 +122,7 @@ py::dict Evaluate(const std::string& policy, const Scenario& scenario, int episo
     const WithoutGil release;
     agent::Decider controller = agent::MakeDecider(policy, scenario.model());
     RefuseKeysOfTraining(overrides, "evaluate");
-    env::RefuseUnread(controller, scenario.agent.task, overrides);
+    env::RefuseUnread(controller, scenario, overrides);
     if (privileged) env::ReadTruth(&controller, scenario.mode);
     WorkerPool pool(std::min(workers, episodes));
     env::EvaluationOptions options;

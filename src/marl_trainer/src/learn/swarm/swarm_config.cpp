@@ -116,6 +116,14 @@ void SwarmConfig::Describe(config::Table* t) {
         return std::vector<std::string>{EntityNetworkName(network)};
       }};
   for (const char* option : {"entropy", "last-entropy"}) t->Own(option, graph);
+  config::Owner four{
+      "waters", {"at least 4 kinds"}, "envs", [this] {
+        return std::vector<std::string>{envs >= 32 ? "at least 4 kinds" : "fewer than 4 kinds"};
+      }};
+  four.refusal =
+      "has no effect with fewer than 32 environments (--envs): AUVs leave in one of "
+      "four kinds of waters, and each kind has 8 environments";
+  t->Own("leaving", four);
 }
 
 void SwarmConfig::ValidateOrThrow() const {

@@ -62,6 +62,7 @@ class ControllerOf final : public Controller {
     law_.Act(input, action);
   }
   using Controller::Act;
+  const Law& law() const { return law_; }
 
  private:
   Law law_;

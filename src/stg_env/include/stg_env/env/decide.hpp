@@ -1,8 +1,5 @@
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "stg_agent/decider/decider.hpp"
 #include "stg_env/env/vector_env.hpp"
 
@@ -17,14 +14,7 @@ void Decide(const agent::Decider& decider, const VectorEnv& env, const float* ob
             double* actions);
 
 /// Lets a built-in controller read true states, also in acoustic mode. Throws UserError if this has
-/// no effect, for a policy and in truth mode.
+/// no effect: for a policy, for `idle`, and in truth mode.
 void ReadTruth(agent::Decider* decider, InformationMode mode);
-
-/// Throws UserError for an override "KEY=value" that has no effect with this decider: of the
-/// numbers of the observation (agent::ReaderOf) a controller reads none and a policy over entities
-/// some; only the latter has a belief of the bottom's depth; and only search laws and policies over
-/// entities read a search map.
-void RefuseUnread(const agent::Decider& decider, const agent::TaskConfig& task,
-                  const std::vector<std::string>& overrides);
 
 }  // namespace stg::env
