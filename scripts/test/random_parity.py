@@ -140,6 +140,9 @@ def draw(seed):
     for section, (chooser, names) in THINGS.items():
         if keys.get(chooser) not in names:  # keys that nothing reads would be refused
             keys = {k: v for k, v in keys.items() if not k.startswith(section + ".")}
+    if keys.get("channel.physical.modem.profile") == "ideal":  # it receives whatever the noise is
+        heard = ("channel.physical.noise.", "channel.physical.propagation.", "channel.physical.water.absorption")
+        keys = {k: v for k, v in keys.items() if not k.startswith(heard)}
     if base.startswith(OF_SEA):
         unread = ["vehicle.fully_actuated.added_mass_coriolis", "control.heading"]
         model = "kinematic" if base == "utracking" else "torpedo"

@@ -132,6 +132,7 @@ ModemPlace ReadPlace(const std::string& file, YamlTree map, const std::string& p
   if (place.clients > 1 && place.tcp < 0) {
     Fail(file, map.line, prefix + ".clients", "only a TCP port accepts more than one client");
   }
+  if (place.serial.empty()) refuse("baud", "only a serial device has this key");
   if (place.serial_baud > 0 && !place.serial.empty()) {
     Fail(file, map.line, prefix + ".serial_baud", "for a serial device, set baud instead");
   }
@@ -148,6 +149,10 @@ GatewayPlace ReadGateway(const std::string& file, YamlTree map, const std::strin
   t.Add("protocol", config::Name(&place.protocol, DriverProtocols()), config::kNone, "-", "");
   t.Add("baud", &place.baud, config::Within(1, 1e7), "-", "");
   t.Add("address", &place.address, config::Within(1, 127), "-", "");
+  const YamlTree::Entry* const baud = FindEntry(map, "baud");
+  if (baud != nullptr && place.port.rfind("tcp://", 0) == 0) {
+    Fail(file, baud->line, prefix + ".baud", "only a serial device has this key");
+  }
   config::Loader loader(t, config::Scope::kWhole);
   loader.ApplyPart(map, prefix + ".", file);
   return place;

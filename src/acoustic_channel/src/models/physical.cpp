@@ -8,6 +8,7 @@
 
 #include "acoustic_channel/link/received_links.hpp"
 #include "auv_common/error.hpp"
+#include "auv_common/names.hpp"
 
 namespace stg::acoustics {
 namespace {
@@ -44,6 +45,23 @@ void Describe(PhysicalConfig* c, config::Table* t) {
   Describe(&c->water, t);
   Describe(&c->noise, t);
   Describe(&c->propagation, t);
+  // An ideal modem receives each packet, whatever its level and the noise.
+  const std::string section = "channel.physical.", modem = section + "modem.";
+  config::Owner real{"modem profile",
+                     Without(ModemProfiles().Names(), {"ideal"}),
+                     modem + "profile",
+                     [c] {
+                       const ModemConfig& m = c->modem;
+                       return m.profiles.empty() ? std::vector<std::string>{m.profile} : m.profiles;
+                     },
+                     {modem + "profiles"}};
+  real.refusal =
+      "ideal modems receive each packet, whatever its level and the noise; choose another " +
+      modem + "profile";
+  for (const char* key :
+       {"noise", "propagation", "water.absorption", "modem.source_level_offset_db"}) {
+    t->Own(section + key, real);
+  }
 }
 
 PhysicalChannel::PhysicalChannel(const ChannelConfig& config, const RunConfig& run,

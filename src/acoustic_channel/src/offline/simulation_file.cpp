@@ -13,6 +13,7 @@
 #include "acoustic_channel/models/propagation_model.hpp"
 #include "auv_common/config/loader.hpp"
 #include "auv_common/error.hpp"
+#include "auv_common/names.hpp"
 
 namespace stg::acoustics {
 namespace {
@@ -160,7 +161,8 @@ std::vector<double> ReadTimes(const Reader& reader) {
 }
 
 TrafficSpec ReadFlow(const std::string& file, const YamlTree& map, std::size_t index,
-                     const std::map<int, int>& index_of, std::size_t max_payload) {
+                     const std::map<int, int>& index_of, std::size_t max_payload,
+                     double duration_s) {
   using Kind = TrafficSpec::Kind;
   Reader reader(file, map, Item("traffic", index));
   TrafficSpec flow;
@@ -199,9 +201,15 @@ TrafficSpec ReadFlow(const std::string& file, const YamlTree& map, std::size_t i
     case Kind::kPeriodic:
       reader.Require("period_s");
       reader.Refuse({"rate_hz", "times_s"}, other);
+      if (flow.offset_s >= duration_s) {
+        reader.Fail("offset_s", "the first packet is not before the end, duration_s");
+      }
       break;
     case Kind::kAt:
       flow.times_s = ReadTimes(reader);
+      if (!flow.times_s.empty() && flow.times_s.back() >= duration_s) {
+        reader.Fail("times_s", "a time is not before the end, duration_s");
+      }
       reader.Refuse({"rate_hz", "period_s", "offset_s"}, other);
       break;
   }
@@ -256,7 +264,11 @@ void ReadNodes(const std::string& file, const Reader& reader, SimulationFile* si
 }
 
 /// Lets keys of the channel belong to what only swarms of AUVs have.
-void OwnByOthers(config::Table* t) {
+void OwnByOthers(const ChannelConfig* channel, config::Table* t) {
+  // There is no mode `truth` here, which reads the range whatever the model is.
+  t->Own("channel.range_m",
+         {"propagation model", Without(PropagationModels().Names(), {"extended", "physical"}),
+          "channel.model", [channel] { return std::vector<std::string>{channel->model}; }});
   const auto own = [t](const std::string& key, const char* kind, std::vector<std::string> names) {
     t->Own("channel." + key, {kind, std::move(names), "simulate has none",
                               [] { return std::vector<std::string>(); }});
@@ -294,7 +306,7 @@ SimulationFile LoadSimulation(const std::string& path) {
   t->Add("seed", &simulation.seed, config::kNone, "-", "");
   t->Add("step_s", &simulation.step_s, config::Within(1e-3, 10.0), "s", "");
   Describe(&simulation.channel, t);
-  OwnByOthers(t);
+  OwnByOthers(&simulation.channel, t);
   const config::Loader& loader = reader.Read({"nodes", "traffic"});
   for (const char* key : {"duration_s", "channel", "nodes", "traffic"}) reader.Require(key);
   ReadNodes(path, reader, &simulation);
@@ -310,7 +322,8 @@ SimulationFile LoadSimulation(const std::string& path) {
   }
   const auto& flows = reader.List("traffic");
   for (std::size_t i = 0; i < flows.size(); ++i) {
-    simulation.traffic.push_back(ReadFlow(path, flows[i], i, index_of, max_payload));
+    simulation.traffic.push_back(
+        ReadFlow(path, flows[i], i, index_of, max_payload, simulation.duration_s));
   }
   return simulation;
 }

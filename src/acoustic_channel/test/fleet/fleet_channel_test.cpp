@@ -292,6 +292,11 @@ TEST(FleetConfig, TheSectionChannelIsEnoughAndTyposAreNamed) {
             std::string::npos);
   EXPECT_NE(error("channel: {model: range}\nsensing: {range_m: 1.0}").find("sensing"),
             std::string::npos);
+  // A file may be a whole scenario, but an override is for the network.
+  const std::string scenario = "name: mine\nchannel: {model: range}\nsensing: {range_m: 1.0}\n";
+  EXPECT_EQ(load(scenario, {"channel.range_m=7", "seed=2"}).run.seed, 2u);
+  EXPECT_THROW(load(scenario, {"sensing.range_m=2"}), UserError);
+  EXPECT_THROW(load(scenario, {"chanel.range_m=2"}), UserError);
 }
 
 TEST(FleetChannel, WithoutModemsTheNewestPacketOfAStepLeavesAndTheOthersAreTold) {

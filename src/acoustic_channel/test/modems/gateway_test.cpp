@@ -66,6 +66,7 @@ TEST(Gateway, WhatOneSideHearsTheOtherSends) {
 
 TEST(Gateway, ItNeedsAPortAndStandsAlone) {
   EXPECT_THROW(WaterWith(kModem, "gateway: {baud: 19200}"), UserError);
+  EXPECT_THROW(WaterWith(kModem, "gateway: {port: 'tcp://127.0.0.1:9', baud: 19200}"), UserError);
   EXPECT_THROW(WaterWith(kModem, std::string(kModem) + ", gateway: {port: /dev/null}"), UserError);
 }
 

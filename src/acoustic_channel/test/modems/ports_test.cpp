@@ -323,6 +323,7 @@ TEST(ModemPorts, FilesThatCannotWorkAreRefused) {
   refused(kNet + ", clients: 0", kNet);
   refused("protocol: s2c, pty: /tmp/none, clients: 2", kNet);
   refused("protocol: s2c, serial: /dev/none, serial_baud: 9600", kNet);
+  refused(kNet + ", baud: 9600", kNet);
 }
 
 }  // namespace

@@ -54,6 +54,11 @@ void RequireKeysOfVehicle(const std::vector<std::string>& overrides) {
       throw stg::UserError("--set '" + text + "': check_vehicle reads only the keys " + vehicle +
                            "* of a scenario");
     }
+    for (const char* key : {"radius_m", "max_velocity_mps", "max_rate_radps", "profile"}) {
+      if (text.rfind(vehicle + key + "=", 0) != 0) continue;
+      throw stg::UserError("--set '" + text +
+                           "': a motion of a torpedo does not depend on this key");
+    }
     if (text.rfind(integrator, 0) == 0) {
       throw stg::UserError("--set '" + text +
                            "': use the option --integrator in place of this key");

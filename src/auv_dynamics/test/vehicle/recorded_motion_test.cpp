@@ -138,6 +138,7 @@ TEST_F(MotionFile, ToolRefusesWhatItCannotCompareWith) {
   EXPECT_EQ(Run(field), 0) << err_;
   for (const auto& [options, message] :
        {std::pair(" --set sensing.range_m=3", "check_vehicle reads only the keys vehicle.*"),
+        std::pair(" --set vehicle.radius_m=1", "a motion of a torpedo does not depend on this key"),
         std::pair(" --set vehicle.integrator=rk4", "use the option --integrator in place")}) {
     EXPECT_EQ(Run(field + options), 2);
     EXPECT_NE(err_.find(message), std::string::npos) << err_;

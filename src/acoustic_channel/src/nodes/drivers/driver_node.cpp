@@ -10,6 +10,7 @@
 #include "auv_common/nodes/conversions.hpp"
 #include "auv_common/nodes/node_main.hpp"
 #include "auv_common/nodes/parameters.hpp"
+#include "modem_parameters.hpp"
 
 namespace stg::nodes {
 namespace {
@@ -31,8 +32,9 @@ acoustics::ModemPort OpenModem(int id) {
   const int address = WholeParameter("address", 0, 0, 254);
   options.address = address > 0 ? address : id + 1;
   options.rssi_offset_db = NumberParameter("rssi_offset_db", -190.0, -1e3, 1e3);
-  return acoustics::ModemPort(TextParameter("protocol", "s2c"), options, port,
-                              WholeParameter("baud", 19200, 1, 1e7));
+  const std::string protocol = TextParameter("protocol", "s2c");
+  RefuseUnreadOfModems(protocol, {port});
+  return acoustics::ModemPort(protocol, options, port, WholeParameter("baud", 19200, 1, 1e7));
 }
 
 }  // namespace
