@@ -17,7 +17,8 @@ import roslib.packages
 
 import hangups
 
-SMALL = ["--scenario", "medium_release", "--envs", "4", "--horizon", "25", "--minibatch", "100",
+# Five environments, because four have the same condition of a mix.
+SMALL = ["--scenario", "medium_release", "--envs", "5", "--horizon", "20", "--minibatch", "100",
          "--actor-hidden", "8", "--critic-hidden", "8", "--workers", "1"]
 
 

@@ -131,6 +131,8 @@ class Vector(unittest.TestCase):
         self.assertEqual(speeds[:4] + speeds[8:], [speeds[0]] * 8)
         self.assertEqual(speeds[4:8], [speeds[4]] * 4)
         self.assertNotEqual(speeds[0], speeds[4])
+        with self.assertRaisesRegex(stg.UserError, "2 scenarios need more environments"):
+            stg.vector_env("medium", 4, condition=["nominal", "fast_target"])
 
     def test_seeding_one_environment_leaves_the_others_alone(self):
         a, b = stg.vector_env("medium", 6), stg.vector_env("medium", 6)

@@ -142,7 +142,7 @@ class Load(unittest.TestCase):
         for overrides in ({"critic.far_scale_m": 2.0}, {"reset": {"curriculum": True}}):
             with self.assertRaisesRegex(stg.UserError, "evaluate does not train"):
                 stg.evaluate("pursuit", overrides=overrides, episodes=1)
-        with self.assertRaisesRegex(stg.UserError, "but 'pursuit' does not"):
+        with self.assertRaisesRegex(stg.UserError, "but 'pursuit' decides"):
             stg.evaluate("pursuit", overrides={"observation.graph": False}, episodes=1)
 
     def test_what_is_no_policy_is_refused(self):

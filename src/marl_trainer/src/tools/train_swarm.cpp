@@ -8,6 +8,7 @@
 #include "auv_common/program.hpp"
 #include "auv_common/stop_signals.hpp"
 #include "marl_trainer/learn/swarm/swarm_trainer.hpp"
+#include "ranks/started_by_mpi.hpp"
 
 int main(int argc, char** argv) {
   stg::CommandLine app(
@@ -30,6 +31,9 @@ int main(int argc, char** argv) {
   app.Add(table);
   app.AddPlugins();
   return app.Run(argc, argv, [&] {
+    if (stg::learn::StartedByMpi()) {
+      throw stg::UserError("this training has no ranks: start it without mpirun, with --workers");
+    }
     options.log = &std::cout;
     options.stop = &stg::HeedStopSignals();
     const std::string folder = stg::config::ScenarioFolder();

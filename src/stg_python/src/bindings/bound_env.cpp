@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "arrays.hpp"
+#include "auv_common/error.hpp"
 #include "without_gil.hpp"
 
 namespace stg::python {
@@ -22,9 +23,22 @@ BoundEnv::Use::Use(const BoundEnv* env) : env_(*env) {
   }
 }
 
+namespace {
+
+const std::vector<Scenario>& RequireThatAllAreUsed(const std::vector<Scenario>& mix, int envs) {
+  const int blocks = (envs + env::kMixBlock - 1) / env::kMixBlock;
+  if (envs > 0 && static_cast<int>(mix.size()) > blocks) {
+    throw UserError(std::to_string(mix.size()) + " scenarios need more environments, because " +
+                    std::to_string(env::kMixBlock) + " have the same one");
+  }
+  return mix;
+}
+
+}  // namespace
+
 BoundEnv::BoundEnv(const std::vector<Scenario>& mix, const env::VectorEnvOptions& options,
                    int workers)
-    : pool_(std::make_unique<EnvPool>(mix, options, workers)),
+    : pool_(std::make_unique<EnvPool>(RequireThatAllAreUsed(mix, options.envs), options, workers)),
       envs_(options.envs),
       process_(static_cast<int>(getpid())) {
   const env::VectorEnv& first = *pool_->parts().front().envs;

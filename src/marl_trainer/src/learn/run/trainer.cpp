@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <functional>
 
 #include "auv_common/error.hpp"
 #include "marl_trainer/learn/nn/blas.hpp"
@@ -23,6 +24,13 @@ std::vector<Scenario> Mix(const Scenario& scenario, const std::vector<Scenario>&
   std::vector<Scenario> all;
   for (const Scenario& s : mix) {
     all.push_back(env::VariantScenario(Valid(s, setup), setup.common.variant));
+  }
+  const int blocks = (setup.common.envs + env::kMixBlock - 1) / env::kMixBlock;
+  if (static_cast<int>(all.size()) > blocks) {
+    throw UserError(std::to_string(all.size()) + " conditions need at least " +
+                    std::to_string((static_cast<int>(all.size()) - 1) * env::kMixBlock + 1) +
+                    " environments (--envs), because " + std::to_string(env::kMixBlock) +
+                    " have the same one");
   }
   if (all.empty()) all.push_back(base);
   for (const Scenario& s : all) {
@@ -108,6 +116,7 @@ Trainer::Trainer(const Scenario& scenario, const TrainSetup& setup, const Option
   UseOneBlasThread();
   state_.config = ToJson(setup_).dump();
   for (const Scenario& s : mix_) state_.scenario += ToYaml(s);
+  RequireEqualRanks();
   if (options_.resume) {
     Resume();
   } else if (folder_.HoldsRun()) {
@@ -124,6 +133,16 @@ Trainer::Trainer(const Scenario& scenario, const TrainSetup& setup, const Option
                                     options_.resume ? state_.env_steps : -1, setup_.common.steps,
                                     options_.log);
   if (!state_.log.empty()) log_->Load(state_.log);
+}
+
+void Trainer::RequireEqualRanks() const {
+  const std::uint64_t mine = std::hash<std::string>()(state_.config + state_.scenario);
+  for (const std::uint64_t theirs : team_.ranks->Gather(std::vector<std::uint64_t>{mine})) {
+    if (theirs != mine) {
+      throw UserError(
+          "the ranks have different options or scenarios; start all with the same ones");
+    }
+  }
 }
 
 void Trainer::Resume() {

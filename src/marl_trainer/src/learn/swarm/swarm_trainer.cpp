@@ -46,6 +46,7 @@ SwarmTrainer::SwarmTrainer(std::vector<SwarmTask> mixture, std::vector<SwarmTask
                     " kinds of waters");
   }
   std::filesystem::create_directories(options.out);
+  lock_.emplace(options.out);
   const bool there = std::filesystem::exists(options.out + "/checkpoint.ckpt");
   if (there && !options.resume) {
     throw UserError(options.out + ": holds a training; --resume continues it");

@@ -144,5 +144,31 @@ TEST_F(RanksTest, WhatCannotBeSharedIsRefused) {
   refused(few, 16, "--envs");
 }
 
+TEST_F(RanksTest, DifferentOptionsAreRefusedByAll) {
+  std::atomic<int> refused{0};
+  ThreadRanks(2).Run([&](Communicator* self) {
+    Trainer::Options own = Options("different");
+    own.ranks = self;
+    TrainSetup setup = SetupOf("mappo");
+    setup.common.seed += static_cast<std::uint64_t>(self->rank());
+    try {
+      Trainer(ShortScenario(), setup, own);
+    } catch (const UserError& error) {
+      refused += std::string(error.what()).find("different options") != std::string::npos;
+    }
+  });
+  EXPECT_EQ(refused, 2);
+}
+
+TEST_F(RanksTest, EachConditionOfAMixHasEnvironments) {
+  Trainer::Options options = Options("mixed");
+  options.mix = {ShortScenario(), ShortScenario(), ShortScenario()};
+  TrainSetup setup = SetupOf("mappo");
+  setup.common.envs = 8;
+  EXPECT_THROW(Trainer(ShortScenario(), setup, options), UserError);
+  options.mix.pop_back();
+  EXPECT_NO_THROW(Trainer(ShortScenario(), setup, options));
+}
+
 }  // namespace
 }  // namespace stg::learn

@@ -238,6 +238,13 @@ TEST_F(SwarmTraining, RefusesAFolderOfAnotherTraining) {
   EXPECT_THROW(Train("run", 1, true), UserError);
 }
 
+TEST_F(SwarmTraining, TwoTrainingsDoNotWriteIntoOneFolder) {
+  SwarmTrainer::Options options;
+  options.out = (folder_ / "run").string();
+  const SwarmTrainer first({Waters(3), Waters(5)}, {Waters(4)}, config_, options);
+  EXPECT_THROW(SwarmTrainer({Waters(3), Waters(5)}, {Waters(4)}, config_, options), UserError);
+}
+
 TEST_F(SwarmTraining, TheCriticLearnsToExplainReturns) {
   config_.horizon = 12;
   config_.learning_rate = 3e-3;

@@ -52,6 +52,8 @@ class Trainer {
   const Problem& problem() const { return problem_; }
 
  private:
+  /// Throws UserError if a rank has other options or scenarios than this one.
+  void RequireEqualRanks() const;
   void Resume();
   void ScheduleNext();
   void Iterate(TrainRecord* record);

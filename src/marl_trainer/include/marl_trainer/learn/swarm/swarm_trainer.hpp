@@ -3,10 +3,12 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <ostream>
 #include <string>
 #include <vector>
 
+#include "auv_common/folder_lock.hpp"
 #include "auv_common/parallel/worker_pool.hpp"
 #include "marl_trainer/learn/swarm/swarm_learner.hpp"
 
@@ -48,6 +50,7 @@ class SwarmTrainer {
 
   SwarmConfig config_;
   Options options_;
+  std::optional<FolderLock> lock_;  ///< against other trainings that write into the folder
   std::vector<SwarmTask> mixture_, validation_;
   WorkerPool pool_;
   SwarmLearner learner_;
