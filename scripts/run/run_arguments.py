@@ -23,6 +23,8 @@ ANY_SEED = -1  # this default means the scenario's seed
 NUMBERS_OR_NOTHING = ("latitude", "longitude")
 # Numbers that the program chooses if they are `auto`.
 NUMBERS_OR_AUTO = ("lr", "critic_lr", "epochs", "critic_updates", "log_std")
+# Arguments whose default is an expression, which roslaunch computes, and a value that shows their kind.
+COMPUTED = {"open_water": "false", "target_lost_rate": "0.0"}
 # An argument without effect unless another argument of the launch file has this value.
 NEEDS = {
     "bag": {"record": "true"},
@@ -55,6 +57,7 @@ def _is_number(value):
 
 def _what_it_takes(name, text, default):
     """Returns the kind of an argument if `text` is not of this kind; otherwise an empty string."""
+    default = COMPUTED.get(name, default)
     given, usual = _as_roslaunch_reads(text), _as_roslaunch_reads(default)
     if name in NUMBERS_OR_NOTHING:
         fits, takes = not text or _is_number(given), "a number, such as 54.5, or nothing"

@@ -10,6 +10,7 @@ import types
 import unittest
 
 import rosgraph
+from roslaunch.substitution_args import resolve_args
 from run_launcher import LAUNCH, free_port, launch, process_of, processes_with, stop
 from stg_common.loading import load_program
 
@@ -98,6 +99,24 @@ class Arguments(unittest.TestCase):
             for name, default in run_arguments.declared(file).items():
                 if default and "$(" not in default:
                     run_arguments.check([file.parents[1].name, file.name, f"{name}:={default}"])
+
+    def test_every_value_that_roslaunch_computes_is_of_the_kind_of_its_argument(self):
+        computed = 0
+        for file in (PACKAGES / "stg_bringup" / "launch").glob("*.launch"):
+            for scenario in ("medium", "field"):
+                values = {"scenario": scenario}
+                for name, default in run_arguments.declared(file).items():
+                    if name not in values:
+                        values[name] = resolve_args(default or "", {"arg": values})
+                        if default and "$(eval" in default:
+                            computed += 1
+                            run_arguments.check(["stg_bringup", file.name, f"{name}:={values[name]}"])
+        self.assertGreater(computed, 8)
+
+    def test_wrong_values_in_place_of_computed_ones_are_refused(self):
+        for word, takes in (("open_water:=yes", "true or false, not 'yes'"),
+                            ("target_lost_rate:=none", "a number, such as 0.0, not 'none'")):
+            self.assertIn(takes, self.refusal(word, file="train_online.launch"))
 
 
 class Bags(unittest.TestCase):
