@@ -118,7 +118,13 @@ def check(words):
     if not found:
         return
     defaults = declared(found[0])
-    given = dict(word.split(":=", 1) for word in words if ":=" in word and word[0] != "_")
+    pairs = [word.split(":=", 1) for word in words if ":=" in word and word[0] != "_"]
+    given = dict(pairs)
+    for name in given:
+        values = [text for other, text in pairs if other == name]
+        if len(values) > 1:
+            shown = " and ".join(f"{name}:={text}" for text in values)
+            raise Refusal(f"{name} is given {len(values)} times ({shown}); leave out all but one")
     for name, text in given.items():
         if name not in defaults:
             near = difflib.get_close_matches(name, defaults, 1)

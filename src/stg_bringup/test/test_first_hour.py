@@ -89,6 +89,20 @@ class Help(unittest.TestCase):
             status, output = run(ROOT / "stg", "run", name, f"scenario:={other}")
             self.assertEqual(status, 2, output)
             self.assertIn(f"run: {name} and scenario:={other} are two scenarios", output)
+        for words, reason in ((("run", "hunt", "task:=search"), "run: hunt and task:=search are two scenarios"),
+                              (("train", "hard", "--scenario", "medium"), "train: hard and --scenario name the"),
+                              (("train", "hard", "--scenario=medium"), "train: hard and --scenario name the")):
+            status, output = run(ROOT / "stg", *words)
+            self.assertEqual(status, 2, output)
+            self.assertIn(reason, output)
+
+    def test_a_report_that_cannot_be_made_is_refused_before_the_run(self):
+        for words, reason in ((("report:=a.html", "report:=b.html"), "report is given twice"),
+                              (("report:=",), "report:= takes the name of a file"),
+                              (("record:=False", "report:=a.html"), "needs a recording, so leave out record:=false")):
+            status, output = run(ROOT / "stg", "run", "medium", *words)
+            self.assertEqual(status, 2, output)
+            self.assertIn(reason, output)
 
     def test_help_of_a_run_names_the_controllers(self):
         for scenario in ("medium", "hard", "swarm20", "field"):

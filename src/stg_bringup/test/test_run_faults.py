@@ -318,8 +318,8 @@ class Lost(WithFolder):
         self.assertEqual(processes_with(environment["ROS_MASTER_URI"]), {}, output)
 
     def test_metrics_that_are_gone_at_the_end(self):
-        process, environment = self.start(*QUICK, "respawn:=false", "episodes:=1",
-                                          "overrides:=[time.episode_steps=4000]")
+        process, environment = self.start(*ENDLESS, "respawn:=false", "episodes:=1", "real_time_factor:=0",
+                                          "deadline:=20", "overrides:=[time.episode_steps=4000]")
         os.kill(process_of("/metrics", environment), signal.SIGKILL)
         status, output = self.finish(process)
         self.assertEqual(status, 1, output)
