@@ -34,6 +34,7 @@ NEEDS = {
     "packet_log": {"emulate": "true"},
 }
 WINDOWS = ("overview", "follow", "both")  # views in rviz; a launch file with a port has `web`, too
+WEB_RATE_HZ = 10.0  # the page in a browser gets no more steps per second (graph.launch)
 
 
 def declared(file):
@@ -79,6 +80,39 @@ def _what_it_takes(name, text, default):
     return "" if fits else takes
 
 
+def _is_changed(name, given, defaults):
+    """True if the command line gives an argument another value than its default."""
+    default = defaults.get(name) or ""
+    return name in given and _as_roslaunch_reads(given[name]) != _as_roslaunch_reads(default)
+
+
+def _check_priority(given, defaults):
+    """Refuses a real-time priority for a run that does not follow the wall clock (graph.launch)."""
+    name = "realtime_priority"
+    if not _is_changed(name, given, defaults) or _as_roslaunch_reads(given[name]) == 0:
+        return
+    factor = given.get("real_time_factor", defaults["real_time_factor"])
+    if not 0.0 < float(factor) <= 1.0:
+        raise Refusal(
+            f"{name}:={given[name]} has no effect, because real_time_factor is {factor}; add a"
+            f" real_time_factor above 0 and at most 1, or leave out {name}"
+        )
+
+
+def _check_page(given, defaults):
+    """Refuses arguments that have no effect on a page in a browser."""
+    if "port" not in defaults or given.get("view", defaults["view"]) != "web":
+        return
+    if given.get("gui", "").lower() == "true":
+        raise Refusal("gui:=true has no effect, because view is web; leave out one of them")
+    rate = given.get("display_rate", "0")
+    if _is_changed("display_rate", given, defaults) and float(rate) > WEB_RATE_HZ:
+        raise Refusal(
+            f"display_rate:={rate} has no effect above {WEB_RATE_HZ:g}, because view is web; add"
+            f" display_rate:={WEB_RATE_HZ:g}, or leave out display_rate"
+        )
+
+
 def _check_effect(given, defaults):
     """Refuses arguments that have no effect beside the others, and two names for the scenario.
 
@@ -99,6 +133,8 @@ def _check_effect(given, defaults):
                     f"{name}:={given[name]} has no effect, because {other} is {now}; add"
                     f" {other}:={value}, or leave out {name}"
                 )
+    _check_priority(given, defaults)
+    _check_page(given, defaults)
     task, scenario = given.get("task"), given.get("scenario")
     if task and scenario and task != scenario:
         raise Refusal(

@@ -133,13 +133,18 @@ class Graph(unittest.TestCase):
                 ("medium", "bag:=a.bag", "bag: has no effect without record:=true"),
                 ("medium", "port:=9999", "port: has no effect without view:=web"),
                 ("medium", "view:=bogus", "view: must be web, overview, follow or both"),
+                ("field", "realtime_priority:=5", "no effect unless real_time_factor is above 0 and at most 1"),
+                ("web", "gui:=true", "gui: has no effect with view:=web"),
+                ("web", "display_rate:=30", "display_rate: has no effect above 10 with view:=web"),
                 ("sea", "config:=a.yaml", "no effect with emulate:=false"),
                 ("sea", "packet_log:=a.csv", "no effect with emulate:=false"),
                 ("field", "scenario:=field", "name two scenarios, so leave out one")):
-            others = {"sea": ["emulate:=false"], "field": ["task:=hunt"]}.get(file, [])
+            others = {"sea": ["emulate:=false"], "field": ["task:=hunt"], "web": ["view:=web"]}.get(file, [])
+            file = {"web": "medium"}.get(file, file)
             self.assertIn(why, refusal(file, argument, *others))
             self.assertEqual(refusal(file, *others), "", file)
-        for arguments in (["record:=true", "bag:=a.bag"], ["view:=web", "port:=9999"], ["view:=both"]):
+        for arguments in (["record:=true", "bag:=a.bag"], ["view:=web", "port:=9999"], ["view:=both"],
+                          ["realtime_priority:=5", "real_time_factor:=0.5"], ["view:=web", "display_rate:=5"]):
             self.assertEqual(refusal("medium", *arguments), "", arguments)
         self.assertEqual(refusal("sea", "config:=/a.yaml", "packet_log:=a.csv"), "")
         self.assertEqual(refusal("field", "task:=hunt", "scenario:=hunt"), "")

@@ -72,7 +72,13 @@ class Arguments(unittest.TestCase):
                 ("view", "view:=both rviz:=false", "because rviz is false"),
                 ("sea", "emulate:=false config:=a.yaml", "because emulate is false"),
                 ("sea", "emulate:=false packet_log:=a.csv", "because emulate is false"),
-                ("field", "task:=hunt scenario:=field", "task:=hunt and scenario:=field are two")):
+                ("field", "task:=hunt scenario:=field", "task:=hunt and scenario:=field are two"),
+                ("medium", "realtime_priority:=5 real_time_factor:=0", "realtime_priority:=5 has no effect, because"
+                 " real_time_factor is 0; add a real_time_factor above 0 and at most 1, or leave out"),
+                ("field", "realtime_priority:=5", "because real_time_factor is 10.0"),
+                ("medium", "view:=web gui:=true", "gui:=true has no effect, because view is web"),
+                ("field", "view:=web display_rate:=30", "display_rate:=30 has no effect above 10, because view is"),
+                ("medium", "seed:=1 seed:=2", "seed is given 2 times (seed:=1 and seed:=2); leave out all but one")):
             self.assertIn(why, self.refusal(*words.split(), file=f"{file}.launch"), words)
 
     def test_arguments_with_effect_pass(self):
@@ -81,7 +87,10 @@ class Arguments(unittest.TestCase):
                             ("medium", "view:=overview port:=8300 gui:=false"),
                             ("replay", "bag:=a.bag view:=both"), ("view", "view:=both"),
                             ("sea", "config:=a.yaml packet_log:=a.csv"),
-                            ("field", "task:=hunt scenario:=hunt"), ("field", "scenario:=hunt")):
+                            ("field", "task:=hunt scenario:=hunt"), ("field", "scenario:=hunt"),
+                            ("medium", "realtime_priority:=5"), ("medium", "realtime_priority:=0 real_time_factor:=0"),
+                            ("field", "realtime_priority:=5 real_time_factor:=0.5"),
+                            ("medium", "view:=web display_rate:=5"), ("medium", "display_rate:=30 gui:=true")):
             run_arguments.check(["stg_bringup", f"{file}.launch", *words.split()])
 
     def test_values_of_the_right_kind_pass(self):
