@@ -15,9 +15,11 @@ import sys
 
 from stg_common.files import FileError
 from stg_common.program import run_program
+from stg_common.stated import stated
 from stg_view.browser import BrowserError
 from stg_view.from_folder import read_folder
 from stg_view.page import PageError, report_page, write_page
+from stg_view.video import frame_size, write_video
 
 
 def parse_arguments(arguments):
@@ -33,7 +35,12 @@ def parse_arguments(arguments):
     parser.add_argument("--video-seconds", type=float, default=12.0, help="length of the video (default: 12)")
     parser.add_argument("--video-size", default="1280x720", help="size of the video (default: 1280x720)")
     parser.add_argument("--video-theme", choices=["light", "dark"], default="dark")
-    return parser.parse_args(arguments)
+    options = parser.parse_args(arguments)
+    if not options.video:
+        for name in sorted(stated(parser, arguments)):
+            if name.startswith("video_"):
+                parser.error(f"--{name.replace('_', '-')} has no effect without --video")
+    return options
 
 
 def read_any(path, salvage, title):
@@ -48,6 +55,8 @@ def read_any(path, salvage, title):
         return read_bag(path, salvage, title)
     if not os.path.exists(path):
         raise FileError(path, "no such file or folder")
+    if salvage:
+        raise FileError(path, "--salvage has no effect, because this is no bag")
     return read_folder(path)
 
 
@@ -56,6 +65,9 @@ def main(arguments=None):
     options = parse_arguments(arguments)
     name = pathlib.Path(options.run).resolve().name
     title = options.title or name
+    if options.video:
+        # Now, because making the page may take minutes.
+        frame_size(options.video, options.video_seconds, options.video_size)
     try:
         recording = read_any(options.run, options.salvage, title)
     except LookupError as error:
@@ -65,8 +77,6 @@ def main(arguments=None):
     write_page(report_page(recording, title, is_chosen=options.title is not None), out)
     print(f"report: {out}, {os.path.getsize(out) / 1e6:.1f} MB")
     if options.video:
-        from stg_view.video import write_video
-
         write_video(out, options.video, options.video_seconds, options.video_size, options.video_theme)
         print(f"report: {options.video}")
     return 0

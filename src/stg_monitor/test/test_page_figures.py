@@ -14,6 +14,7 @@ import unittest.mock
 
 import view_fixtures
 from page_case import PageCase
+from stg_common.files import FileError
 from stg_common.loading import load_program
 from stg_view.browser import BrowserError
 from stg_view.video import write_video
@@ -120,6 +121,22 @@ class FiguresTest(PageCase):
                                    "stream=width,height,nb_read_frames", "-of", "csv=p=0", film],
                                   capture_output=True, text=True, check=True)  # fmt: skip
             self.assertEqual("480,320,10", told.stdout.strip())
+
+    def test_options_of_a_report_without_effect_are_refused(self):
+        with tempfile.TemporaryDirectory() as folder:
+            run = pathlib.Path(folder) / "run.stgv"
+            run.write_bytes(view_fixtures.made_up(4).encoded())
+            for words in (["--video-seconds", "12"], ["--video-size", "1280x720"], ["--video-theme", "dark"]):
+                said = io.StringIO()
+                with contextlib.redirect_stderr(said), self.assertRaises(SystemExit) as ended:
+                    report.main([str(run), *words])
+                self.assertEqual(2, ended.exception.code)
+                self.assertIn(f"{words[0]} has no effect without --video", said.getvalue())
+            with self.assertRaisesRegex(FileError, "--salvage has no effect, because this is no bag"):
+                report.main([str(run), "--salvage"])
+            with unittest.mock.patch("shutil.which", return_value="ffmpeg"), self.assertRaisesRegex(BrowserError, "'big' is not a size"):
+                report.main([str(run), "--video", "run.mp4", "--video-size", "big"])
+            self.assertEqual([run], list(pathlib.Path(folder).iterdir()))
 
     def test_a_video_that_cannot_be_is_one_sentence(self):
         with unittest.mock.patch("shutil.which", return_value=None), self.assertRaisesRegex(BrowserError, "install ffmpeg"):

@@ -6,7 +6,7 @@ import subprocess
 
 from stg_view.browser import BrowserError, opened_page
 
-__all__ = ["write_video"]
+__all__ = ["frame_size", "write_video"]
 
 FRAMES_PER_S = 20
 GIF_COLOURS = "split[a][b];[a]palettegen=max_colors=128[p];[b][p]paletteuse=dither=bayer"
@@ -17,10 +17,9 @@ OUTPUT = {
 }
 
 
-def write_video(page, out, seconds, size, theme="dark", camera="swarm", tab="story", span=(0.0, 1.0), rate=FRAMES_PER_S):
-    """Films a page from disk in `seconds`. span: the part of the run as two shares of it."""
-    kind = pathlib.Path(out).suffix
-    if kind not in OUTPUT:
+def frame_size(out, seconds, size):
+    """Returns (width, height) in pixels. Refuses a video that cannot be made."""
+    if pathlib.Path(out).suffix not in OUTPUT:
         raise BrowserError(f"{out}: a video ends in {', '.join(OUTPUT)}")
     if not shutil.which("ffmpeg"):
         raise BrowserError("a video needs ffmpeg: install ffmpeg")
@@ -30,8 +29,14 @@ def write_video(page, out, seconds, size, theme="dark", camera="swarm", tab="sto
         raise BrowserError(f"'{size}' is not a size such as 1280x720") from None
     if not (0.1 <= seconds <= 600 and 200 <= width <= 4096 and 200 <= height <= 4096):
         raise BrowserError("a video takes 0.1 to 600 seconds and 200 to 4096 pixels")
+    return width, height
+
+
+def write_video(page, out, seconds, size, theme="dark", camera="swarm", tab="story", span=(0.0, 1.0), rate=FRAMES_PER_S):
+    """Films a page from disk in `seconds`. span: the part of the run as two shares of it."""
+    width, height = frame_size(out, seconds, size)
     command = ["ffmpeg", "-v", "error", "-y", "-f", "image2pipe", "-c:v", "mjpeg", "-r", str(rate), "-i", "-",
-               *OUTPUT[kind], out]  # fmt: skip
+               *OUTPUT[pathlib.Path(out).suffix], out]  # fmt: skip
     url = pathlib.Path(page).resolve().as_uri() + f"#theme={theme}&camera={camera}&tab={tab}"
     with opened_page(url, width, height) as driver:
         film = subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE)
