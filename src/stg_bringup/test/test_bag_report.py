@@ -116,6 +116,17 @@ class WholeBag(WithFolder):
         self.assertEqual(ended.exception.code, 2)
 
 
+    def test_options_that_draw_nothing_are_refused(self):
+        for options, why in (
+            (["--no-figures", "--episode", "0"], "--episode has no effect with --no-figures"),
+            (["--max-figures", "10", "--no-figures"], "--max-figures has no effect with --no-figures"),
+            (["--episode", "0", "--max-figures", "1"], "--max-figures has no effect with --episode"),
+        ):
+            status, _, errors = run_report(self.bag, *options)
+            self.assertEqual(status, 2)
+            self.assertIn(why, errors)
+
+
 class DamagedBag(WithFolder):
     """A file that is no whole bag gives one clear line and nothing else."""
 

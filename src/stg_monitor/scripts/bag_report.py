@@ -22,6 +22,7 @@ from collections import defaultdict
 
 from stg_common.files import FileError
 from stg_common.program import run_program
+from stg_common.stated import stated
 from stg_common.yaml_files import parse_yaml
 from stg_view.bag_reading import BagError, messages, open_bag
 from stg_view.scenario_reading import sections_of
@@ -272,7 +273,7 @@ def parse_arguments(arguments):
     parser.add_argument("bag", help="recorded run")
     parser.add_argument("-o", "--out", help="output folder (default: the bag's name + _report)")
     parser.add_argument("--episode", type=int, help="draw this episode only (default: all)")
-    parser.add_argument("--max-figures", type=int, default=10, help="draw at most this number of figures")
+    parser.add_argument("--max-figures", type=int, default=10, help="draw at most this number of figures (default: 10)")
     parser.add_argument("--no-figures", action="store_true", help="write the CSV files only")
     parser.add_argument(
         "--salvage", action="store_true", help="read the complete part of a truncated bag"
@@ -280,6 +281,15 @@ def parse_arguments(arguments):
     options = parser.parse_args(arguments)
     if options.max_figures < 0:
         parser.error("--max-figures must not be negative")
+    given = stated(parser, arguments)
+    for name, other, why in (
+        ("episode", "no_figures", "no figure is drawn"),
+        ("max_figures", "no_figures", "no figure is drawn"),
+        ("max_figures", "episode", "one figure is drawn"),
+    ):
+        if name in given and other in given:
+            option, beside = (f"--{word.replace('_', '-')}" for word in (name, other))
+            parser.error(f"{option} has no effect with {beside}, because {why}")
     return options
 
 
