@@ -191,6 +191,21 @@ class RvizFiles(unittest.TestCase):
                 self.assertRegex(run.stderr, r"^view: [^\n]*scenario.yaml:[^\n]*\n$")
 
 
+    def test_options_that_are_unknown_are_refused_and_names_of_ros_pass(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            (folder / "s.yaml").write_text("{}")
+            for words, status in ((["--bogus"], 2), (["more"], 2), (["__name:=rviz", "_x:=1", "a:=b"], 0)):
+                run = subprocess.run(
+                    ["/usr/bin/python3", SOURCES / "stg_monitor" / "scripts" / "view.py", "follow", "--scenario-file",
+                     folder / "s.yaml", "--write", folder / "view", *words], stderr=subprocess.PIPE, check=False,
+                    universal_newlines=True, timeout=60,
+                )  # fmt: skip
+                self.assertEqual(run.returncode, status, run.stderr)
+                if status:
+                    self.assertIn(f"unknown option '{words[0]}'", run.stderr)
+
+
 class Replay(unittest.TestCase):
     """replay.launch finds a bag by any form of its name."""
 

@@ -104,6 +104,10 @@ def main():
     parser.add_argument("--scenario-file", default="", help="instead of the running scenario")
     parser.add_argument("--write", metavar="FILE", help="write the view there instead of opening it")
     arguments, names = parser.parse_known_args()
+    # ROS adds names, such as __name:=rviz, which rviz reads.
+    unknown = [word for word in names if ":=" not in word]
+    if unknown:
+        parser.error(f"unknown option '{unknown[0]}'")
     file = arguments.scenario_file
     if file:
         scenario = sections_of(read_yaml(file), file)
