@@ -14,13 +14,21 @@ import tempfile
 import time
 
 from stg_common.program import run_program
+from stg_common.stated import stated
 
 HERE = os.path.dirname(os.path.realpath(__file__))
 THRESHOLDS = ("no_loss", "1000", "1020", "1030", "1040")
 ALGORITHMS = "ippo,happo,maddpg,matd3,masac,madqn"  # in addition to MAPPO, the default
 # Options that an algorithm needs in addition to the preset, to reach the goal (docs/algorithms).
 BESIDE = {"madqn": ["--reward", "own", "--gamma", "0.8"]}
-PARTS = ("environment", "training", "algorithms", "ros")
+# Each part, and the options that it reads.
+TRAINS = {"seeds", "workers", "steps", "bin"}
+PARTS = {
+    "environment": {"seconds", "bin"},
+    "training": TRAINS,
+    "algorithms": TRAINS | {"algorithms"},
+    "ros": set(),
+}
 GOAL = ("1030", 60.0)  # return and seconds that every seed should reach
 
 
@@ -77,7 +85,19 @@ def parse(argv):
         options.parts.remove("ros")
     if not options.parts:
         parser.error("--only ros and --no-ros leave nothing to do")
+    check_effect(parser, options, stated(parser, argv))
     return options
+
+
+def check_effect(parser, options, given):
+    """Refuses options that no chosen part reads. given: the names of the options that the user set."""
+    chosen = set().union(*(PARTS[part] for part in options.parts))
+    read = {"out", "only"} | chosen | (set() if options.only else {"no_ros"})
+    if not options.seeds:  # nothing is trained
+        read -= {"workers", "steps", "algorithms"}
+    for name in sorted(given - read):
+        why = ", because --seeds is empty" if name in chosen else f" with --only {options.only}"
+        parser.error(f"--{name.replace('_', '-')} has no effect{why}")
 
 
 def program(folder, name):

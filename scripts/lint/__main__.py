@@ -33,6 +33,8 @@ def parse(argv, names):
     unknown = [name for name in options.checkers if name not in names]
     if unknown:
         parser.error(f"no checker '{unknown[0]}'; there are: {', '.join(names)}")
+    if options.fix and options.checkers and "format" not in options.checkers:
+        parser.error(f"--fix has no effect on {options.checkers[0]}, because only the checker format repairs files")
     return options
 
 

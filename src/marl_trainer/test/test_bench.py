@@ -22,7 +22,7 @@ class Bench(unittest.TestCase):
 
     def bench(self, *arguments):
         done = subprocess.run(
-            [BENCH, "--bin", self.folder, "--out", self.out, "--no-ros", *arguments],
+            [BENCH, "--bin", self.folder, "--out", self.out, *(["--no-ros"] if "--only" not in arguments else []), *arguments],
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             universal_newlines=True,
@@ -77,6 +77,20 @@ class Bench(unittest.TestCase):
         status, output = self.bench("--seeds", "")
         self.assertEqual(status, 1)
         self.assertIn("bench: bench_env is not built", output)
+        self.assertFalse(os.path.exists(self.out))
+
+    def test_options_that_no_chosen_part_reads_are_refused(self):
+        for arguments, reason in (
+            (("--only", "environment", "--seeds", "1"), "--seeds has no effect with --only environment"),
+            (("--only", "training", "--algorithms", "ippo"), "--algorithms has no effect with --only training"),
+            (("--only", "algorithms", "--seconds", "1"), "--seconds has no effect with --only algorithms"),
+            (("--only", "training", "--no-ros"), "--no-ros has no effect with --only training"),
+            (("--only", "ros"), "--bin has no effect with --only ros"),
+            (("--seeds", "", "--steps", "9"), "--steps has no effect, because --seeds is empty"),
+        ):
+            status, output = self.bench(*arguments)
+            self.assertEqual(status, 2, output)
+            self.assertIn(reason, output)
         self.assertFalse(os.path.exists(self.out))
 
     def test_failing_program_is_an_error(self):

@@ -64,6 +64,7 @@ class Tools(unittest.TestCase):
         self.check_refused("--steps.*1 or more", "bench/bench.py", "--steps", "0")
         self.check_refused("nothing to do", "bench/bench.py", "--only", "ros", "--no-ros")
         self.check_refused("--out: /proc cannot be written", "bench/bench.py", "--out", "/proc")
+        self.check_refused("--fix has no effect on words", "lint/__main__.py", "--build", ".", "words", "--fix")
         self.check_refused("required.*--build", "test/fuzz.py", "packet", "1")
         self.check_refused("no packages", "lint/draw_architecture.py", "--source", ".")
         self.check_refused("none.svg: No such", "lint/draw_architecture.py", "--check", "--out", "none")
