@@ -95,6 +95,7 @@ class Draws(unittest.TestCase):
             ({"algorithms": {"mappo": {None: [1]}}}, "mappo.None"),
             ({"fixed": {"mappo": 3}}, "fixed.mappo"),
             ({"fixed": {"mappo": {"lr": []}}}, "fixed.mappo.lr"),
+            ({"fixed": {"ippo": {"lr": 0.1}}}, "fixed.ippo: has no effect, because algorithms does not have ippo"),
         ):
             with tempfile.TemporaryDirectory() as folder:
                 path = os.path.join(folder, "search.yaml")

@@ -66,6 +66,8 @@ def load_search(path):
                 raise StudyError(f"{where}: must consist of letters, digits, '_' and '-'")
             if not isinstance(options, dict):
                 raise StudyError(f"{where}: must be a mapping")
+            if algorithm not in search.algorithms:
+                raise StudyError(f"{where}: has no effect, because algorithms does not have {algorithm}")
             for option, value in options.items():
                 if not isinstance(option, str):
                     raise StudyError(f"{where}.{option}: is not a name of an option")
