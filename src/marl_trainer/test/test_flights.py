@@ -127,6 +127,32 @@ class Flights(unittest.TestCase):
         run = self.reproduce("--policies", str(self.folder))
         self.assertRegex(run.stderr, r"^reproduce: --policies: has no effect, .* in \{policies\}\n$")
 
+    def test_what_no_flight_and_no_table_uses_is_refused(self):
+        columns = [{"metric": "band_share", "title": "in band", "beside": True}]
+        for changes, what in (
+            ({"pilots": {**STUDY["pilots"], "spare": "law"}}, "pilots.spare: has no effect, because no section flies it"),
+            ({"knows": {**STUDY["knows"], "rumour": {}}}, "knows.rumour: has no effect, because no pilot"),
+            ({"compare": "best"}, "compare: 'best' is no pilot of a section; there are better, law"),
+            ({"compare": "", "compare_metric": "return"}, "compare_metric: has no effect without compare"),
+            ({"beside": ["better"]}, "beside: must have a pilot and at least one other"),
+            ({"beside": ["better", "spare"]}, "beside: 'spare' does not fly with 'own' in the section All"),
+            ({"columns": columns}, r"columns\[0\].beside: has no effect, because the study has no list beside"),
+        ):
+            with self.subTest(what), self.assertRaisesRegex(flight_study.StudyError, "^study: " + what):
+                flight_study.flight_study_from({**STUDY, **changes}, "study")
+        for changes in ({"beside": ["better", "law"], "columns": columns}, {"compare": "law", "compare_metric": "return"}):
+            flight_study.flight_study_from({**STUDY, **changes}, "study")
+
+    def test_the_table_beside_leaves_out_places_whose_flights_are_not_finished(self):
+        column = {"metric": "band_share", "title": "in band", "beside": True}
+        made = flight_study.flight_study_from({**STUDY, "beside": ["better", "law"], "columns": [column]}, "study")
+        place = {"section": "All", "scenario": "field", "variant": "", "knows": "own"}
+        rows = [{**place, "condition": c, "pilot": p, "band_share": 0.5}
+                for c, p in (("nominal", "better"), ("nominal", "law"), ("calm", "better"))]  # fmt: skip
+        table = flight_page.beside_table(made, rows)
+        self.assertIn("| field | nominal | `law` | 0.50 / 0.50 |", table)
+        self.assertNotIn("calm", table)
+
     def test_the_overrides_of_the_knowledge_replace_those_of_the_variant(self):
         changed = {**STUDY, "sections": [{**STUDY["sections"][0], "variants": {"loud": ["x=1", "silent=0"]}}]}
         cells = flight_study.plan_flights(flight_study.flight_study_from(changed, "study"), "work", "bin")
@@ -163,7 +189,7 @@ class Flights(unittest.TestCase):
         section = {**STUDY["sections"][0], "pilots": {"all": ["own"], "white": ["own"]}}
 
         def plan(**trained):
-            changed = {**STUDY, "compare": "all", "sections": [section],
+            changed = {**STUDY, "compare": "all", "sections": [section], "knows": {"own": {}},
                        "pilots": {n: {**p, "trained": trained.get(n, {})} for n, p in pilots.items()}}  # fmt: skip
             made = flight_study.flight_study_from(changed, "study")
             return flight_study.plan_flights(made, str(self.folder), str(self.folder), str(self.folder))

@@ -175,6 +175,8 @@ def beside_table(study, rows):
     lines = []
     for place in dict.fromkeys(place_of(row) for row in rows):
         here = {row["pilot"]: row for row in rows if place_of(row) == place and row["knows"] == "own"}
+        if any(name not in here for name in study.beside):
+            continue  # its flights are not finished
         best = max((here[name] for name in others), key=lambda row: row[study.columns[0].metric])
         pairs = [" / ".join(cell((row[c.metric], None), c.digits, c.scale) for row in (here[ours], best))
                  for c in columns]  # fmt: skip

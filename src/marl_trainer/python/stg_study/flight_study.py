@@ -140,7 +140,34 @@ def flight_study_from(data, where):
                 raise StudyError(f"{where}: sections.{section.title}.{pilot}: must be some of {known}")
         if not all(isinstance(v, list) for v in section.variants.values()):
             raise StudyError(f"{where}: sections.{section.title}.variants: must be lists of overrides")
+    _check_effect(study, where)
     return study
+
+
+def _check_effect(study, where):
+    """Refuses what no flight and no table uses. Raises StudyError."""
+    flown_by = {pilot for section in study.sections for pilot in section.pilots}
+    known = {k for section in study.sections for kinds in section.pilots.values() for k in kinds}
+    for name in study.pilots:
+        if name not in flown_by:
+            raise StudyError(f"{where}: pilots.{name}: has no effect, because no section flies it")
+    for name, knowledge in study.knows.items():
+        is_default = name == "own" and knowledge == Knowledge()
+        if name not in known and not is_default:
+            raise StudyError(f"{where}: knows.{name}: has no effect, because no pilot of a section has it")
+    if study.compare and study.compare not in flown_by:
+        raise StudyError(f"{where}: compare: '{study.compare}' is no pilot of a section; there are {', '.join(sorted(flown_by))}")
+    if not study.compare and study.compare_metric != FlightStudy.compare_metric:
+        raise StudyError(f"{where}: compare_metric: has no effect without compare")
+    if len(study.beside) == 1:
+        raise StudyError(f"{where}: beside: must have a pilot and at least one other, with which it is compared")
+    for name in study.beside:
+        for section in study.sections:
+            if "own" not in section.pilots.get(name, []):
+                raise StudyError(f"{where}: beside: '{name}' does not fly with 'own' in the section {section.title}")
+    for i, column in enumerate(study.columns):
+        if column.beside and not study.beside:
+            raise StudyError(f"{where}: columns[{i}].beside: has no effect, because the study has no list beside")
 
 
 def save_flight_study(study, path):
