@@ -273,9 +273,8 @@ ModemFile LoadModemFile(const std::string& path) {
   Describe(&file.network.channel, &t);
   config::Loader loader(t, config::Scope::kWhole);
   YamlTree rest = Without(root, "vehicles");
-  const bool tcp = std::any_of(file.vehicles.begin(), file.vehicles.end(), [](const auto& v) {
-    return v.modem && v.modem->tcp >= 0;
-  });
+  const bool tcp = std::any_of(file.vehicles.begin(), file.vehicles.end(),
+                               [](const auto& v) { return v.modem && v.modem->tcp >= 0; });
   if (const YamlTree::Entry* listen = FindEntry(rest, "listen"); listen != nullptr && !tcp) {
     Fail(path, listen->line, "listen", "is the address of TCP ports, but no modem has one (tcp)");
   }

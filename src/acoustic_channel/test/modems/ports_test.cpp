@@ -325,7 +325,8 @@ TEST(ModemPorts, FilesThatCannotWorkAreRefused) {
   refused("protocol: s2c, serial: /dev/none, serial_baud: 9600", kNet);
   refused(kNet + ", baud: 9600", kNet);
   const ScratchFile deaf(
-      "vehicles: [{name: a, position_m: [0.0, 0.0, -9.0], modem: {protocol: s2c, pty: /tmp/none}}]\n"
+      "vehicles: [{name: a, position_m: [0.0, 0.0, -9.0], modem: {protocol: s2c, pty: "
+      "/tmp/none}}]\n"
       "channel: {model: physical}\nlisten: 0.0.0.0\n");
   EXPECT_THROW(LoadModemFile(deaf.path()), UserError);
 }

@@ -75,6 +75,10 @@ config::Owner VehicleOwner(const VehicleConfig* c, std::vector<std::string> mode
   return {"vehicle", std::move(models), "vehicle.model", chosen, {"vehicle.models"}};
 }
 
+bool LimitsRates(const VehicleConfig& c) {
+  return VehicleOwner(&c, Without(Vehicles().Names(), {"torpedo"})).IsChosen();
+}
+
 void Describe(VehicleConfig* c, config::Table* t) {
   const std::string axes = "surge sway heave roll pitch yaw";
   t->Section("vehicle");

@@ -174,7 +174,7 @@ int main(int argc, char** argv) {
     const stg::Scenario s = stg::env::EvaluationScenario(given, variant);
     stg::agent::Decider controller = stg::agent::MakeDecider(policy, s.model());
     stg::env::RefuseUnreadBy(variant, s, overrides);
-    stg::env::RefuseUnread(controller, s, overrides);
+    stg::env::RefuseUnread(controller, {s.model(), s.mode, s.reward.kind}, overrides);
     if (record_episodes > episodes) {
       throw stg::UserError("--record-episodes: there are only " + std::to_string(episodes) +
                            " episodes (--episodes)");

@@ -135,8 +135,8 @@ int Train(int argc, char** argv, stg::learn::Communicator* ranks) {
   const stg::Scenario trained = stg::env::VariantScenario(scenario, setup.common.variant);
   stg::env::RefuseUnreadBy(setup.common.variant, trained, overrides);
   const stg::learn::ImitationConfig* const imitation = setup.own->Imitation();
-  stg::env::RefuseUnreadInTraining(imitation != nullptr ? imitation->controller : "", trained,
-                                   overrides);
+  stg::env::RefuseUnreadInTraining(imitation != nullptr ? imitation->controller : "",
+                                   {trained.model(), trained.mode, trained.reward.kind}, overrides);
   stg::learn::Trainer::Options options;
   options.out = out;
   options.resume = resume;

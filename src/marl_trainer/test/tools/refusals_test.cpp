@@ -55,7 +55,8 @@ TEST_F(CommandLine, WhatHasNoEffectIsRefusedWithASentence) {
           {STG_EVALUATE, "--policy encircle --scenario field --set reward.terms.obstacle.weight=2",
            "belongs to the sea 'obstacles'"},
           {STG_EVALUATE, "--policy encircle --scenario field --set vehicle.max_rate_radps=[1,1,1]",
-           "only a policy over the observation, or a vehicle that is no torpedo, reads this, but "
+           "only a policy over the observation, or a vehicle that limits its rates, reads this, "
+           "but "
            "'encircle' decides"},
           {STG_EVALUATE, "--policy pursuit --scenario field --set believed.sea.auv_depth_m=[30,40]",
            "or a law that keeps off the bottom and obstacles, reads this"},

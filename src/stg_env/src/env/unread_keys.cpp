@@ -1,6 +1,5 @@
 #include "stg_env/env/unread_keys.hpp"
 
-#include <algorithm>
 #include <optional>
 
 #include "auv_common/error.hpp"
@@ -45,42 +44,38 @@ bool IsForeign(const agent::Decider& decider) {
 
 /// A key that not everything reads.
 struct Rule {
-  std::vector<std::string> keys;  ///< or sections
+  std::vector<std::string> keys;
   bool read;
   std::string what;  ///< that reads it
 };
 
-std::vector<Rule> RulesOf(const Reader& r, const Scenario& s) {
-  const std::vector<std::string> models = s.world.vehicle.models.empty()
-                                              ? std::vector<std::string>{s.world.vehicle.model}
-                                              : s.world.vehicle.models;
-  const bool torpedoes =
-      std::all_of(models.begin(), models.end(), [](const auto& m) { return m == "torpedo"; });
+std::vector<Rule> RulesOf(const Reader& r, const Chosen& s) {
+  const agent::AgentModel& m = s.model;
   const bool policy = r.observes || r.entities, truth = s.mode == InformationMode::kTruth;
-  const bool paper = s.reward.kind == task::RewardKind::kPaper;
-  const bool raw = s.reward.kind == task::RewardKind::kReleaseRaw;
+  const bool paper = s.reward == task::RewardKind::kPaper;
+  const bool raw = s.reward == task::RewardKind::kReleaseRaw;
   return {
       {{"believed.sea.bottom_m"}, r.entities, "a policy over entities"},
       {{"sea.bottom_m"},
-       r.entities || s.world.sea.terrain == "flat",
+       r.entities || m.sea.terrain == "flat",
        "a policy over entities, or a sea with the terrain flat,"},
       {{"believed.sea.auv_depth_m", "believed.sea.spheres", "believed.sea.cylinders"},
        r.entities || r.keeps_off,
        "a policy over entities, or a law that keeps off the bottom and obstacles,"},
       {{"track.search_cell_m"}, r.entities || r.searches, "a policy over entities or a search law"},
       {{"believed.sensing.range_m"}, policy || r.searches, "a policy or a search law"},
-      {{"track.lost_std_m"}, policy || s.agent.task.free(), "a policy, or the assignment free,"},
+      {{"track.lost_std_m"}, policy || m.task.free(), "a policy, or the assignment free,"},
       {{"vehicle.max_rate_radps", "believed.vehicle.max_rate_radps"},
-       r.observes || !torpedoes,
-       "a policy over the observation, or a vehicle that is no torpedo,"},
+       r.observes || dynamics::LimitsRates(m.vehicle),
+       "a policy over the observation, or a vehicle that limits its rates,"},
       {{"control.velocity_gain", "control.attitude_gain", "control.rate_gain", "control.heading",
         "control.heading_gain"},
-       r.law || s.world.control.interface != dynamics::ActionInterface::kTau6,
+       r.law || m.control.interface != dynamics::ActionInterface::kTau6,
        "a law, or the interface velocity3,"},
       {{"channel.range_m"}, r.observes || !truth || paper, "a policy, or the paper's reward,"},
       {{"believed.channel.range_m"}, r.observes || !truth, "a policy, or the mode acoustic,"},
       {{"believed.workspace.half_extent_m"},
-       r.observes || !truth || (r.walls && !s.world.sea.open),
+       r.observes || !truth || (r.walls && !m.sea.open),
        "a policy, a pursuit with a wall-margin, or the mode acoustic,"},
       {{"observation.near_range_m"},
        policy || paper || raw,
@@ -106,7 +101,7 @@ bool ReadsOfObservation(const Reader& r, const std::string& key) {
 }
 
 /// What reads this override instead of `r`; empty if `r` reads it.
-std::string OtherReader(const Reader& r, const Scenario& s, const std::string& override) {
+std::string OtherReader(const Reader& r, const Chosen& s, const std::string& override) {
   for (const Rule& rule : RulesOf(r, s)) {
     if (rule.read) continue;
     for (const std::string& key : rule.keys) {
@@ -126,27 +121,27 @@ void Refuse(const std::string& override, const std::string& what, const std::str
 
 }  // namespace
 
-void RefuseUnread(const agent::Decider& decider, const Scenario& scenario,
+void RefuseUnread(const agent::Decider& decider, const Chosen& chosen,
                   const std::vector<std::string>& overrides) {
   if (IsForeign(decider)) return;
   const Reader reader = ReaderOf(decider);
   for (const std::string& text : overrides) {
-    const std::string other = OtherReader(reader, scenario, text);
+    const std::string other = OtherReader(reader, chosen, text);
     if (!other.empty()) Refuse(text, other, reader.name);
   }
 }
 
-void RefuseUnreadInTraining(const std::string& teacher, const Scenario& scenario,
+void RefuseUnreadInTraining(const std::string& teacher, const Chosen& chosen,
                             const std::vector<std::string>& overrides) {
   Reader trained;
   trained.name = "a policy over the observation";
   trained.observes = true;
   std::optional<agent::Decider> taught;
-  if (!teacher.empty()) taught = agent::MakeDecider(teacher, scenario.model());
+  if (!teacher.empty()) taught = agent::MakeDecider(teacher, chosen.model);
   if (taught && IsForeign(*taught)) return;
   for (const std::string& text : overrides) {
-    const std::string other = OtherReader(trained, scenario, text);
-    if (other.empty() || (taught && OtherReader(ReaderOf(*taught), scenario, text).empty())) {
+    const std::string other = OtherReader(trained, chosen, text);
+    if (other.empty() || (taught && OtherReader(ReaderOf(*taught), chosen, text).empty())) {
       continue;
     }
     Refuse(text, other, trained.name);

@@ -146,7 +146,8 @@ Effect EffectOf(const std::string& path, const Scenario& s, const Flown& flown, 
       changed.ValidateOrThrow();
       if (shown == Shown::kMetrics) {
         RefuseKeysOfTraining(overrides, "evaluate");
-        RefuseUnread(agent::MakeDecider(flown.controller, s.model()), changed, overrides);
+        RefuseUnread(agent::MakeDecider(flown.controller, s.model()),
+                     {changed.model(), changed.mode, changed.reward.kind}, overrides);
       }
       if (Fly(changed, flown, shown) != unchanged) return Effect::kSome;
       ++tried;

@@ -122,7 +122,8 @@ py::dict Evaluate(const std::string& policy, const Scenario& scenario, int episo
     const WithoutGil release;
     agent::Decider controller = agent::MakeDecider(policy, scenario.model());
     RefuseKeysOfTraining(overrides, "evaluate");
-    env::RefuseUnread(controller, scenario, overrides);
+    env::RefuseUnread(controller, {scenario.model(), scenario.mode, scenario.reward.kind},
+                      overrides);
     if (privileged) env::ReadTruth(&controller, scenario.mode);
     WorkerPool pool(std::min(workers, episodes));
     env::EvaluationOptions options;

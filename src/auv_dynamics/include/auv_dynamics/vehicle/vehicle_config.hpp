@@ -58,6 +58,8 @@ struct VehicleConfig {
 
 /// Keys, units and ranges of the section.
 void Describe(VehicleConfig* c, config::Table* t);
+/// Whether a vehicle of the fleet limits its rates to max_rate_radps.
+bool LimitsRates(const VehicleConfig& c);
 /// Owner of keys that only these vehicle models read.
 config::Owner VehicleOwner(const VehicleConfig* c, std::vector<std::string> models);
 /// Contradictions between its keys.

@@ -11,15 +11,22 @@
 /// refused when it is loaded (config::Owner).
 namespace stg::env {
 
-/// Throws UserError for an override "KEY=value" that this decider does not read in this scenario.
+/// The part of a scenario that decides what is read.
+struct Chosen {
+  agent::AgentModel model;
+  InformationMode mode;
+  task::RewardKind reward;
+};
+
+/// Throws UserError for an override "KEY=value" that this decider does not read.
 /// A controller that somebody else registered may read anything.
-void RefuseUnread(const agent::Decider& decider, const Scenario& scenario,
+void RefuseUnread(const agent::Decider& decider, const Chosen& chosen,
                   const std::vector<std::string>& overrides);
 
 /// The same for a policy over the observation that is trained.
 /// @param teacher the controller that the policy imitates, with its constants if needed; may be
 /// empty. What it reads has an effect, too.
-void RefuseUnreadInTraining(const std::string& teacher, const Scenario& scenario,
+void RefuseUnreadInTraining(const std::string& teacher, const Chosen& chosen,
                             const std::vector<std::string>& overrides);
 
 }  // namespace stg::env
