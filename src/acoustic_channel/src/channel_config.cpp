@@ -1,9 +1,11 @@
 #include "acoustic_channel/channel_config.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "acoustic_channel/access/medium_access.hpp"
 #include "acoustic_channel/models/propagation_model.hpp"
+#include "auv_common/names.hpp"
 
 namespace stg::acoustics {
 
@@ -62,6 +64,24 @@ std::optional<config::Violation> FindConflict(const ChannelConfig& c, const RunC
                              "this medium access needs a model with modems, such as physical"};
   }
   return access->FindConflict(model->packet_time(c, run.agents));
+}
+
+void OwnByScenarios(const ChannelConfig* c, bool files_may, config::Table* t) {
+  config::Owner ranged{"propagation model",
+                       Without(PropagationModels().Names(), {"extended", "physical"}),
+                       "channel.model", [c] { return std::vector<std::string>{c->model}; }};
+  ranged.files_state_all = files_may;
+  t->Own("channel.range_m", ranged);
+  const auto own = [&](const std::string& key, const char* kind, std::vector<std::string> names) {
+    config::Owner owner{kind, std::move(names), "scenario",
+                        [] { return std::vector<std::string>(); }};
+    owner.refusal = "belongs to scenarios, and this program runs the network alone";
+    owner.files_state_all = files_may;
+    t->Own(key, owner);
+  };
+  own("channel.physical.propagation.shadow_db", "sea", {"terrain", "obstacles"});
+  for (const char* key : {"time.episode_steps", "time.tail_steps"})
+    own(key, "run", {"in episodes"});
 }
 
 void Describe(NetworkConfig* c, config::Table* t) {

@@ -35,6 +35,11 @@ void Describe(ChannelConfig* c, config::Table* t);
 /// Contradictions between the section and the clocks of the run.
 std::optional<config::Violation> FindConflict(const ChannelConfig& c, const RunConfig& run);
 
+/// Makes keys that only scenarios read belong to them: episodes, shadows of the sea, and the range
+/// of a model that has no range. For programs that run the network alone, after the other keys.
+/// @param files_may a file may state them, because it may be a scenario
+void OwnByScenarios(const ChannelConfig* c, bool files_may, config::Table* t);
+
 /// Sections of a program that runs the network alone.
 struct NetworkConfig {
   RunConfig run;

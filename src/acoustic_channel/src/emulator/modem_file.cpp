@@ -271,6 +271,7 @@ ModemFile LoadModemFile(const std::string& path) {
   t.Section("");
   t.Add("seed", &file.network.run.seed, config::kNone, "-", "");
   Describe(&file.network.channel, &t);
+  OwnByScenarios(&file.network.channel, false, &t);
   config::Loader loader(t, config::Scope::kWhole);
   YamlTree rest = Without(root, "vehicles");
   const bool tcp = std::any_of(file.vehicles.begin(), file.vehicles.end(),

@@ -17,7 +17,10 @@ void Describe(PartialNetwork* c, config::Table* t) {
   // The keys of a thing that is always chosen may be omitted.
   const auto fleet = [] { return std::vector<std::string>{"fleet"}; };
   t->Thing({"network", fleet(), "channel", fleet}, "", &c->network,
-           [](NetworkConfig* network, config::Table* table) { Describe(network, table); });
+           [](NetworkConfig* network, config::Table* table) {
+             Describe(network, table);
+             OwnByScenarios(&network->channel, true, table);
+           });
 }
 
 std::optional<config::Violation> FindConflict(const PartialNetwork& c) {

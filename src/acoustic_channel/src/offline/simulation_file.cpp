@@ -13,7 +13,6 @@
 #include "acoustic_channel/models/propagation_model.hpp"
 #include "auv_common/config/loader.hpp"
 #include "auv_common/error.hpp"
-#include "auv_common/names.hpp"
 
 namespace stg::acoustics {
 namespace {
@@ -265,15 +264,11 @@ void ReadNodes(const std::string& file, const Reader& reader, SimulationFile* si
 
 /// Lets keys of the channel belong to what only swarms of AUVs have.
 void OwnByOthers(const ChannelConfig* channel, config::Table* t) {
-  // There is no mode `truth` here, which reads the range whatever the model is.
-  t->Own("channel.range_m",
-         {"propagation model", Without(PropagationModels().Names(), {"extended", "physical"}),
-          "channel.model", [channel] { return std::vector<std::string>{channel->model}; }});
+  OwnByScenarios(channel, false, t);
   const auto own = [t](const std::string& key, const char* kind, std::vector<std::string> names) {
     t->Own("channel." + key, {kind, std::move(names), "simulate has none",
                               [] { return std::vector<std::string>(); }});
   };
-  own("physical.propagation.shadow_db", "sea", {"terrain", "obstacles"});
   for (const char* key : {"clock_offset_std_s", "clock_drift_std_ppm", "timing_std_s",
                           "late_probability", "late_max_s"}) {
     own(std::string("physical.modem.") + key, "ranging", {"one_way", "ping"});

@@ -297,6 +297,7 @@ TEST(FleetConfig, TheSectionChannelIsEnoughAndTyposAreNamed) {
   EXPECT_EQ(load(scenario, {"channel.range_m=7", "seed=2"}).run.seed, 2u);
   EXPECT_THROW(load(scenario, {"sensing.range_m=2"}), UserError);
   EXPECT_THROW(load(scenario, {"chanel.range_m=2"}), UserError);
+  EXPECT_THROW(load(scenario, {"time.tail_steps=2"}), UserError);
 }
 
 TEST(FleetChannel, WithoutModemsTheNewestPacketOfAStepLeavesAndTheOthersAreTold) {

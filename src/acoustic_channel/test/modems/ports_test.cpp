@@ -329,6 +329,10 @@ TEST(ModemPorts, FilesThatCannotWorkAreRefused) {
       "/tmp/none}}]\n"
       "channel: {model: physical}\nlisten: 0.0.0.0\n");
   EXPECT_THROW(LoadModemFile(deaf.path()), UserError);
+  const ScratchFile ranged(
+      "vehicles: [{name: a, position_m: [0.0, 0.0, -9.0], modem: {protocol: s2c, tcp: 0}}]\n"
+      "channel: {model: physical, range_m: 9.0}\n");
+  EXPECT_THROW(LoadModemFile(ranged.path()), UserError);
 }
 
 }  // namespace
