@@ -56,6 +56,17 @@ class LaunchFiles(unittest.TestCase):
                         f"no node {node.package}/{node.type}",
                     )
 
+    def test_a_run_from_a_clone_builds_all_that_it_starts(self):
+        # `./stg run` builds the target stg_graph, or everything if the launch file starts a trainer.
+        built = set()
+        for file in (ROOT / "src").glob("*/CMakeLists.txt"):
+            built |= set(re.findall(r"stg_graph_node\(\S+ (\w+)", file.read_text(encoding="utf-8")))
+        for path in sorted(LAUNCH.glob("*.launch")):
+            nodes = load(path, required_arguments(ElementTree.parse(path).getroot())).nodes
+            programs = {node.type for node in nodes if node.package != "rosbag" and not node.type.endswith(".py")}
+            if "trainer_node" not in programs:
+                self.assertEqual(set(), programs - built, path.name)
+
     def test_each_node_is_free_of_what_earlier_launches_told_it(self):
         for path in [*launch_files(), *sorted((LAUNCH / "include").glob("*.launch"))]:
             for node in ElementTree.parse(path).getroot().iter("node"):
