@@ -103,9 +103,9 @@ void ModemsNode::OnOdometry(int vehicle, const nav_msgs::Odometry::ConstPtr& mes
     refused_.Add(Refusals::kNotFinite);
     return;
   }
-  const TimeNs t = server_.Now();
-  members_[static_cast<std::size_t>(vehicle)].heard = t;
   server_.SetPresent(vehicle, true);
+  const TimeNs t = server_.Now();  // after SetPresent, which takes the water to its own time
+  members_[static_cast<std::size_t>(vehicle)].heard = t;
   server_.water().Move(vehicle, t,
                        {VectorOf(message->pose.pose.position),
                         WorldVelocity(message->pose.pose, message->twist.twist)});
