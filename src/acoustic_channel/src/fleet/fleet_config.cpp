@@ -52,13 +52,15 @@ NetworkConfig LoadFleetNetwork(const std::string& file, const std::vector<std::s
   if (!config::FindScalar(file, "channel.model")) {
     throw UserError(file + ": channel.model: missing key; it chooses the propagation model");
   }
-  RequireKeysOfNetwork(overrides);
   const bool scenario = config::FindScalar(file, "name").has_value();
   config::Source source{file, {}, overrides};
   source.overrides.push_back("agents=" + std::to_string(vehicles));
-  return config::Load<PartialNetwork>(
-             source, scenario ? config::Scope::kOwnSections : config::Scope::kWhole)
-      .network;
+  const NetworkConfig network =
+      config::Load<PartialNetwork>(source,
+                                   scenario ? config::Scope::kOwnSections : config::Scope::kWhole)
+          .network;
+  RequireKeysOfNetwork(overrides);  // now, because the file may have loaded plugins with more keys
+  return network;
 }
 
 }  // namespace stg::acoustics
