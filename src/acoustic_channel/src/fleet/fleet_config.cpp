@@ -55,7 +55,7 @@ NetworkConfig LoadFleetNetwork(const std::string& file, const std::vector<std::s
   const bool scenario = config::FindScalar(file, "name").has_value();
   config::Source source{file, {}, overrides};
   source.overrides.push_back("agents=" + std::to_string(vehicles));
-  const NetworkConfig network =
+  NetworkConfig network =
       config::Load<PartialNetwork>(source,
                                    scenario ? config::Scope::kOwnSections : config::Scope::kWhole)
           .network;
