@@ -26,8 +26,7 @@ BoundEnv::Use::Use(const BoundEnv* env) : env_(*env) {
 namespace {
 
 const std::vector<Scenario>& RequireThatAllAreUsed(const std::vector<Scenario>& mix, int envs) {
-  const int blocks = (envs + env::kMixBlock - 1) / env::kMixBlock;
-  if (envs > 0 && static_cast<int>(mix.size()) > blocks) {
+  if (envs > 0 && static_cast<int>(mix.size()) > env::MostOfMix(envs)) {
     throw UserError(std::to_string(mix.size()) + " scenarios need more environments, because " +
                     std::to_string(env::kMixBlock) + " have the same one");
   }

@@ -25,8 +25,7 @@ std::vector<Scenario> Mix(const Scenario& scenario, const std::vector<Scenario>&
   for (const Scenario& s : mix) {
     all.push_back(env::VariantScenario(Valid(s, setup), setup.common.variant));
   }
-  const int blocks = (setup.common.envs + env::kMixBlock - 1) / env::kMixBlock;
-  if (static_cast<int>(all.size()) > blocks) {
+  if (static_cast<int>(all.size()) > env::MostOfMix(setup.common.envs)) {
     throw UserError(std::to_string(all.size()) + " conditions need at least " +
                     std::to_string((static_cast<int>(all.size()) - 1) * env::kMixBlock + 1) +
                     " environments (--envs), because " + std::to_string(env::kMixBlock) +

@@ -25,6 +25,8 @@ struct LaneSet;
 /// In a mix of n scenarios, environment e has scenario (e / kMixBlock) mod n. This constant is part
 /// of the seed rule and the same on every machine.
 inline constexpr int kMixBlock = 4;
+/// The largest number of scenarios of a mix of which each one has an environment.
+constexpr int MostOfMix(int envs) { return (envs + kMixBlock - 1) / kMixBlock; }
 
 /// Number and seeds of a VectorEnv's environments.
 struct VectorEnvOptions {
