@@ -46,7 +46,7 @@ BASES = (
 ).split()
 OF_SEA = ("field", "fig6", "utracking")
 CONTROLLERS = ("pursuit", "pursuit_separated", "encircle", "idle")
-MOTIONS = ("constant_velocity", "coordinated_turn", "random_waypoint", "evasive")
+MOTIONS = ("constant_velocity", "coordinated_turn", "legs", "random_waypoint", "evasive")
 MODEMS = ("ideal", "micromodem_fsk_r0", "micromodem_psk_r1", "janus", "evologics_s2c")
 ACCESS = ("periodic", "tdma", "aloha", "slotted_aloha", "csma")
 # Possible values of a key: a choice, or a number between two limits. Lengths are scaled with the scenario.

@@ -81,7 +81,7 @@ bool SameBits(const Record& a, const Record& b) {
 TEST(Lanes, EachLaneEqualsTheSameWorldAloneBitForBit) {
   for (const Integrator integrator : {Integrator::kRk4, Integrator::kSemiImplicit}) {
     for (const std::string motion :
-         {"constant_velocity", "coordinated_turn", "random_waypoint", "evasive"}) {
+         {"constant_velocity", "coordinated_turn", "legs", "random_waypoint", "evasive"}) {
       WorldScenario scenario = QuietScenario(4);
       scenario.world.vehicle.integrator = integrator;
       scenario.world.vehicle.float32_tau = motion == "evasive";

@@ -185,7 +185,7 @@ TEST(Registries, KeysTakeNamesThatWereAddedAndListThem) {
   }
   EXPECT_EQ(ranges["vehicle.model"], "fully_actuated | torpedo | kinematic | cart");
   EXPECT_EQ(ranges["target.motion"],
-            "constant_velocity | coordinated_turn | random_waypoint | evasive | lift");
+            "constant_velocity | coordinated_turn | legs | random_waypoint | evasive | lift");
   EXPECT_EQ(ranges["sensing.sensor"], "position | range | bearing | range_bearing | blinker");
   EXPECT_NO_THROW(config::ValidateOrThrow(OutsideScenario(2)));
 }

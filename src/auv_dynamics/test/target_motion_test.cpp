@@ -75,7 +75,7 @@ void CheckLimits(const WorldScenario& scenario, World* world, int steps) {
 }
 
 TEST(TargetMotion, EveryMotionStaysWithinSpeedTurnRateAndWorkspace) {
-  for (const std::string motion : {"coordinated_turn", "random_waypoint", "evasive"}) {
+  for (const std::string motion : {"coordinated_turn", "legs", "random_waypoint", "evasive"}) {
     WorldScenario scenario = TargetScenario(motion);
     // The reset stage may start it this fast. It then meets every wall.
     scenario.world.reset.stages[2].target_speed_mps = {0.01, 0.05};
@@ -106,6 +106,86 @@ TEST(TargetMotion, CoordinatedTurnTurnsAtTheStatedMeanRate) {
   }
   // The 4000 rates are uniform in [0, 0.2] rad/s. The test allows five deviations.
   EXPECT_NEAR(turned / (0.1 * kSteps), 0.1, 5.0 * 0.2 / std::sqrt(12.0 * 4000.0));
+}
+
+/// Legs of 5 s without walls, with turns of 0.3 rad; overrides replace these numbers.
+WorldScenario LegsScenario(const std::vector<std::string>& overrides = {}) {
+  WorldScenario scenario = TargetScenario("legs");
+  config::Override(&scenario, {"target.legs.duration_s=[5, 5]", "target.legs.turn_rad=[0.3, 0.3]"});
+  config::Override(&scenario, overrides);
+  scenario.world.workspace.half_extent_m = 100.0;  // no wall interferes
+  return scenario;
+}
+
+TEST(TargetMotion, LegsAreStraightAndAFixedTurnApart) {
+  World world(LegsScenario());
+  world.Reset(0, 3, 0, ResetStage::kMedium);
+  int port = 0, turns = 0;
+  Vec3<double> axis{};
+  for (int leg = 0; leg < 200; ++leg) {
+    const Vec3<double> before = Lane(world.target(0).v_WT, 0);
+    // The first step of a leg begins its turn; with 0.5 rad/s the turn takes 0.6 s of 5 s.
+    for (int k = 0; k < 10; ++k) world.Step(NoForce(1));
+    const Vec3<double> after = Lane(world.target(0).v_WT, 0);
+    EXPECT_NEAR(AngleBetween(before, after), leg == 0 ? 0.0 : 0.3, 1e-9) << leg;
+    for (int k = 10; k < 50; ++k) {
+      world.Step(NoForce(1));
+      ASSERT_EQ(Norm(Lane(world.target(0).v_WT, 0) - after), 0.0) << leg;
+    }
+    const Vec3<double> turned = Cross(before, after);
+    if (leg > 1) port += Dot(axis, turned) > 0.0 ? 1 : 0;
+    axis = turned;
+    ++turns;
+  }
+  EXPECT_EQ(turns, 200);
+  EXPECT_GT(port, 60);  // axes are drawn at random: half of them point to each side
+  EXPECT_LT(port, 140);
+}
+
+TEST(TargetMotion, LegsLastAsLongAsStatedAndTurnToBothSidesInOpenWater) {
+  WorldScenario scenario =
+      LegsScenario({"target.legs.duration_s=[4, 8]", "target.legs.turn_rad=[0.2, 0.4]"});
+  scenario.world.sea.open = true;
+  World world(scenario);
+  world.Place(0, {{0.0, 0.0, -30.0}}, {{10.0, 0.0, -30.0}}, {{0.01, 0.0, 0.0}});
+  int legs = 0, port = 0;
+  double turned = 0.0;
+  bool turning = false;
+  constexpr int kSteps = 60000;  // 6000 s
+  for (int k = 0; k < kSteps; ++k) {
+    const Vec3<double> before = Lane(world.target(0).v_WT, 0);
+    world.Step(NoForce(1));
+    const Vec3<double> after = Lane(world.target(0).v_WT, 0);
+    EXPECT_EQ(after.z, 0.0);
+    const double angle = AngleBetween(before, after);
+    turned += angle;
+    if (angle > 1e-9 && !turning) {
+      ++legs;
+      port += Cross(before, after).z > 0.0 ? 1 : 0;
+    }
+    turning = angle > 1e-9;
+  }
+  // Mean of 6 s, deviation 4 / sqrt(12) s, and a step of 0.1 s to end in: five deviations.
+  EXPECT_NEAR(legs, 6000.0 / 6.05, 5.0 * std::sqrt(1000.0) * 1.155 / 6.0);
+  EXPECT_NEAR(turned / legs, 0.3, 5.0 * 0.2 / std::sqrt(12.0 * 1000.0));
+  EXPECT_NEAR(port, legs / 2.0, 5.0 * std::sqrt(legs / 4.0));
+}
+
+TEST(TargetMotion, TheCourseOfALegWalksAsStated) {
+  WorldScenario scenario = LegsScenario(
+      {"target.legs.duration_s=[1000, 1000]", "target.legs.course_walk_rad_per_sqrt_s=0.02"});
+  World world(scenario);
+  double square = 0.0;
+  constexpr int kEpisodes = 400;
+  for (int n = 0; n < kEpisodes; ++n) {
+    world.Reset(0, static_cast<std::uint64_t>(n), 0, ResetStage::kMedium);
+    const Vec3<double> before = Lane(world.target(0).v_WT, 0);
+    for (int k = 0; k < 100; ++k) world.Step(NoForce(1));
+    const double angle = AngleBetween(before, Lane(world.target(0).v_WT, 0));
+    square += angle * angle / kEpisodes;
+  }
+  // 10 s: a variance of 0.02^2 * 10; the deviation of a variance of 400 values is sqrt(2 / 400).
+  EXPECT_NEAR(square, 0.004, 5.0 * 0.004 * std::sqrt(2.0 / kEpisodes));
 }
 
 TEST(TargetMotion, EvasiveTargetTurnsAwayFromAnAuvInRange) {

@@ -223,7 +223,7 @@ TEST(World, DisturbanceIsNotLimitedByTheActuators) {
 
 TEST(World, StepAllocatesNothing) {
   for (const Integrator integrator : {Integrator::kRk4, Integrator::kSemiImplicit}) {
-    for (const std::string motion : {"coordinated_turn", "random_waypoint", "evasive"}) {
+    for (const std::string motion : {"coordinated_turn", "legs", "random_waypoint", "evasive"}) {
       WorldScenario scenario = QuietScenario(8);
       scenario.world.vehicle.integrator = integrator;
       scenario.world.vehicle.float32_tau = true;

@@ -7,6 +7,7 @@ MotionRegistry& TargetMotions() {
                                  {
                                      STG_ENTRY(MotionRegistry, ConstantVelocityEntry),
                                      STG_ENTRY(MotionRegistry, CoordinatedTurnEntry),
+                                     STG_ENTRY(MotionRegistry, LegsEntry),
                                      STG_ENTRY(MotionRegistry, RandomWaypointEntry),
                                      STG_ENTRY(MotionRegistry, EvasiveEntry),
                                  });

@@ -138,7 +138,7 @@ TEST(Obstacles, EpisodesStartClearOfThemOrAreRefused) {
 }
 
 TEST(Obstacles, TargetsOfEveryMotionGoRoundThemAtTheirSpeed) {
-  for (const char* motion : {"coordinated_turn", "random_waypoint", "evasive"}) {
+  for (const char* motion : {"coordinated_turn", "legs", "random_waypoint", "evasive"}) {
     WorldScenario s = Water(1);
     s.world.target.motion = motion;
     s.world.sea.cylinders = {{60.0, 0.0, -120.0, 30.0, 120.0}, {-80.0, 40.0, -120.0, 30.0, 120.0}};
