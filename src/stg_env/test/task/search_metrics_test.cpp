@@ -104,6 +104,37 @@ TEST(SearchMetrics, WithoutAnObservationNothingIsFoundOrFollowed) {
   EXPECT_EQ(m.followed, 0.0);
 }
 
+TEST(SearchMetrics, TheErrorOfATargetIsThatOfItsNearestAuv) {
+  JudgeConfig scenario = Sea(2);
+  scenario.world.target.count = 2;
+  scenario.agent.task.assignment = agent::Assignment::kFree;
+  SearchTotals<double> totals(scenario);
+  Swarm swarm(2);
+  swarm.Stand({0.0, 90.0}, 90.0);
+  swarm.targets.resize(2);
+  swarm.targets[1].p_WT = {1000.0, 0.0, -40.0};
+  swarm.vehicles[0].p_WB = {100.0, 0.0, 0.0};
+  swarm.vehicles[1].p_WB = {900.0, 0.0, 0.0};
+  Following<double> following(2, 2);
+  following.known = {1.0, 1.0, 1.0, 1.0};
+  // Rows are AUVs. The depth of the first one's estimate is wrong, too, which does not count.
+  following.p_WT = {{3.0, 4.0, -25.0}, {500.0, 0.0, 0.0}, {-60.0, 0.0, 0.0}, {1000.0, 15.0, -40.0}};
+  const auto add = [&] {
+    totals.Add({swarm.vehicles, swarm.targets, swarm.separations, swarm.efforts, swarm.efforts, 0.0,
+                &swarm.field, &following},
+               swarm.tracking);
+  };
+  totals.Start(true);
+  add();
+  EXPECT_DOUBLE_EQ(*totals.Metrics(0, 1.0).choices->nearest_error, (5.0 + 15.0) / 2.0);
+  following.known[3] = 0.0;  // the AUV nearest to the second target has no estimate of it
+  add();
+  EXPECT_DOUBLE_EQ(*totals.Metrics(0, 2.0).choices->nearest_error, (5.0 + 15.0 + 5.0) / 3.0);
+  swarm.field[0].present = 0.0;  // the other AUV is the nearest one now
+  add();
+  EXPECT_DOUBLE_EQ(*totals.Metrics(0, 3.0).choices->nearest_error, (25.0 + 60.0) / 4.0);
+}
+
 TEST(SearchMetrics, NetSpeedIsOneOnAStraightWayAndLessOnACircle) {
   for (const bool straight : {true, false}) {
     SearchTotals<double> totals(Sea(1));

@@ -44,6 +44,7 @@ class SearchTotals {
   };
   /// With task.assignment free.
   void AddChoices(const SwarmState<T>& swarm);
+  void AddNearest(const SwarmState<T>& swarm);
   void AddSwaps(const SwarmState<T>& swarm, std::size_t i);
   T InBand(const Tracking<T>& k) const;
   void Follow(const Vec3<T>& p_WT, OfTarget* target) const;
@@ -54,6 +55,7 @@ class SearchTotals {
   std::vector<OfTarget> targets_;
   // With task.assignment free.
   T switches_ = T(0.0), swaps_ = T(0.0), judged_ = T(0.0), ospa_ = T(0.0), gospa_ = T(0.0);
+  T nearest_ = T(0.0), nearest_known_ = T(0.0);
   std::vector<T> chosen_;  // [agents] at the last decision
   /// [agents, targets], true target of an estimate when it was last good; -1: none. Empty with
   /// labelled detections.

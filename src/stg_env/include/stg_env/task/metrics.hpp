@@ -17,6 +17,10 @@ struct ChoiceMetrics {
   double ospa = 0.0, gospa = 0.0;
   /// With unlabelled detections: how often an estimate has become one of another target, per AUV.
   std::optional<double> swaps;
+  /// With labelled detections: mean over targets and decisions of the horizontal error of the
+  /// estimate that the AUV nearest to the target has of it [m]. UTracking (arXiv 2505.08222)
+  /// reports this error.
+  std::optional<double> nearest_error;
 };
 
 /// Metrics of search: detection, surrounding and following of targets.

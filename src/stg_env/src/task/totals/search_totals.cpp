@@ -31,6 +31,7 @@ std::vector<std::pair<std::string, double>> SearchMetrics::Items() const {
     items.insert(
         items.end(),
         {{"switches", choices->switches}, {"ospa", choices->ospa}, {"gospa", choices->gospa}});
+    if (choices->nearest_error) items.emplace_back("nearest_error", *choices->nearest_error);
     if (choices->swaps) items.emplace_back("swaps", *choices->swaps);
   }
   return items;
@@ -57,7 +58,9 @@ void SearchTotals<T>::Start(const Mask<T>& lanes) {
   restart(&decisions_, 0.0);
   restart(&gathered_, -1.0);
   restart(&info_spread_, 0.0);
-  for (T* sum : {&switches_, &swaps_, &judged_, &ospa_, &gospa_}) restart(sum, 0.0);
+  for (T* sum : {&switches_, &swaps_, &judged_, &ospa_, &gospa_, &nearest_, &nearest_known_}) {
+    restart(sum, 0.0);
+  }
   for (T& chosen : chosen_) restart(&chosen, -1.0);
   for (T& of : of_) restart(&of, -1.0);
   for (OfTarget& t : targets_) {
@@ -110,11 +113,32 @@ void SearchTotals<T>::AddSwaps(const SwarmState<T>& swarm, std::size_t i) {
   }
 }
 
+/// Adds the error of each target's estimate by the AUV that is nearest to the target.
+template <class T>
+void SearchTotals<T>::AddNearest(const SwarmState<T>& swarm) {
+  const Following<T>& f = *swarm.following;
+  const std::size_t n = targets_.size();
+  for (std::size_t t = 0; t < n; ++t) {
+    const Vec3<T>& p_WT = swarm.targets[t].p_WT;
+    T least(1e9), error(0.0), known(0.0);
+    for (std::size_t i = 0; i < chosen_.size(); ++i) {
+      const T apart = Level(swarm.vehicles[i].p_WB - p_WT);
+      const auto nearer = (apart < least) && ((*swarm.field)[i].present > T(0.5));
+      least = Select(nearer, apart, least);
+      error = Select(nearer, Level(f.p_WT[i * n + t] - p_WT), error);
+      known = Select(nearer, f.known[i * n + t], known);
+    }
+    nearest_ += Select(known > T(0.5), error, T(0.0));
+    nearest_known_ += known;
+  }
+}
+
 template <class T>
 void SearchTotals<T>::AddChoices(const SwarmState<T>& swarm) {
   const Following<T>& f = *swarm.following;
   const T zero(0.0), one(1.0);
   const std::size_t n = targets_.size();
+  if (of_.empty()) AddNearest(swarm);
   for (std::size_t i = 0; i < chosen_.size(); ++i) {
     const T present = (*swarm.field)[i].present;
     const auto changed = (chosen_[i] >= zero) && !(chosen_[i] == f.target[i]);
@@ -202,8 +226,11 @@ SearchMetrics SearchTotals<T>::Metrics(int lane, double steps) const {
     m.choices = ChoiceMetrics{Lane(switches_, lane) / static_cast<double>(chosen_.size()),
                               Lane(ospa_, lane) / judged,
                               Lane(gospa_, lane) / judged,
+                              {},
                               {}};
-    if (!of_.empty()) {
+    if (of_.empty()) {
+      m.choices->nearest_error = Lane(nearest_, lane) / std::max(1.0, Lane(nearest_known_, lane));
+    } else {
       m.choices->swaps = Lane(swaps_, lane) / static_cast<double>(chosen_.size());
     }
   }
