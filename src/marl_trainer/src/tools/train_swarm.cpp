@@ -29,6 +29,11 @@ int main(int argc, char** argv) {
   stg::config::Table table;
   config.Describe(&table);
   app.Add(table);
+  std::vector<std::string> overrides;
+  app.Add("--set", &overrides,
+          "scenario override key.path=value of every kind of waters, also of the reward of the "
+          "training; repeatable")
+      .OneValuePerUse();
   app.AddPlugins();
   return app.Run(argc, argv, [&] {
     if (stg::learn::StartedByMpi()) {
@@ -38,8 +43,8 @@ int main(int argc, char** argv) {
     options.stop = &stg::HeedStopSignals();
     const std::string folder = stg::config::ScenarioFolder();
     stg::learn::SwarmTrainer trainer(
-        stg::learn::FieldMixture(folder, scenario, config, config.envs / 8),
-        stg::learn::FieldValidation(folder, scenario), config, options);
+        stg::learn::FieldMixture(folder, scenario, config, config.envs / 8, overrides),
+        stg::learn::FieldValidation(folder, scenario, config, overrides), config, options);
     if (trainer.Run()) return 0;
     std::cout << "stopped and saved; --resume continues" << std::endl;
     return stg::kStopped;

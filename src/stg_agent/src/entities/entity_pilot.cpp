@@ -80,7 +80,11 @@ Guidance<double> GuidanceOf(const float* command, double doubt_m) {
 }
 
 int DecisionsPerCommand(const RunConfig& run) {
-  return static_cast<int>(std::lround(kCommandPeriod_s / run.decision_dt_s()));
+  return std::max(1, static_cast<int>(std::lround(kCommandPeriod_s / run.decision_dt_s())));
+}
+
+double CommandPeriod_s(const RunConfig& run) {
+  return DecisionsPerCommand(run) * run.decision_dt_s();
 }
 
 bool CommandDue(const EntityMemory& memory) {

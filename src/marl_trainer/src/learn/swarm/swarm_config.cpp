@@ -6,54 +6,6 @@
 #include "marl_trainer/learn/swarm/swarm_reward.hpp"
 
 namespace stg::learn {
-namespace {
-
-struct Waters {
-  const char* scenario;  ///< null: the scenario of the training
-  const char* condition;
-  int agents;
-  int targets = 1;
-  /// Factor of the episode's length, because a search gets a reward only after a long time.
-  int longer = 1;
-};
-
-/// The scenarios of the mixture, in their order.
-constexpr Waters kWaters[] = {
-    {nullptr, "combined_stress", 4},
-    {"search", "nominal", 4, 1, 2},
-    {"hunt", "nominal", 4},
-    {nullptr, "nominal", 8},
-    {nullptr, "fast_target", 6},
-    {nullptr, "strong_current", 3},
-    {nullptr, "sparse", 4},
-    {nullptr, "nominal", 4},
-    {nullptr, "combined_stress", 6},
-    {"search_evasive", "nominal", 4, 1, 2},
-    {nullptr, "nominal", 6, 2},
-    {nullptr, "limited_sensing", 5},
-    {"hunt", "nominal", 8},
-    {nullptr, "degraded_communication", 7},
-    {nullptr, "far_initialization", 1},
-    {nullptr, "sparse", 2},
-};
-/// With free_assignment these replace others: {place above, scenario}.
-constexpr std::pair<int, Waters> kFreeWaters[] = {
-    {3, {"many8", "nominal", 8, 2}},
-    {7, {"many8", "nominal", 4, 2}},
-    {10, {"many8", "nominal", 6, 2}},
-    {12, {"many8", "nominal", 5, 2}},
-};
-constexpr int kWatersCount = static_cast<int>(sizeof(kWaters) / sizeof(kWaters[0]));
-
-Waters WatersAt(int place, bool free_assignment) {
-  for (const auto& [replaced, waters] : kFreeWaters) {
-    if (free_assignment && replaced == place) return waters;
-  }
-  return kWaters[place];
-}
-
-}  // namespace
-
 void SwarmConfig::Describe(config::Table* t) {
   t->Add("seed", &seed, config::kNone, "-", "seed of networks, episodes and exploration");
   t->Add("steps", &steps, {1, 1e12}, "-",
@@ -73,8 +25,12 @@ void SwarmConfig::Describe(config::Table* t) {
          "the policy sees its last command; not useful with --noise-time above 0");
   t->Add("leaving", &leaving, config::kNone, "-",
          "in a quarter of the waters one or two AUVs leave, and one of them joins again");
+  t->Add("waters", config::TextRef{&waters}, config::kNone, "-",
+         "own kinds of waters in place of the mixture: name:condition:AUVs:targets, with commas "
+         "between them; what is left out is the scenario's own");
   t->Add("envs", &envs, {8, 4096}, "-", "environments, eight for each kind of waters");
-  t->Add("horizon", &horizon, {1, 10000}, "-", "commands of 5 s between two updates");
+  t->Add("horizon", &horizon, {1, 10000}, "-",
+         "commands between two updates; one lasts 5 s, or a decision if that is longer");
   t->Add("segment", &segment, {1, 100000}, "-", "updates between two checkpoints");
   t->Add("episode-steps", &episode_steps, {1, 1e6}, "-", "decisions of a training episode");
   t->Add("gamma", &gamma, config::kFraction, "-", "discount per command");
@@ -139,48 +95,6 @@ void SwarmConfig::ValidateOrThrow() const {
                     "' does not read edges; --network graph does");
   RequireOption(least_log_std <= log_std && log_std <= most_log_std, "log-std",
                 "must be between --min-log-std and --max-log-std");
-}
-
-std::vector<SwarmTask> FieldMixture(const std::string& folder, const std::string& scenario,
-                                    const SwarmConfig& config, int count) {
-  config.ValidateOrThrow();
-  RequireOption(!config.free_assignment || count > kFreeWaters[0].first, "free-assignment",
-                "needs --envs 32 or more, because fewer have no waters with several targets");
-  std::vector<SwarmTask> mixture;
-  for (int k = 0; k < count; ++k) {
-    const Waters waters = WatersAt(k % kWatersCount, config.free_assignment);
-    const std::string steps = std::to_string(config.episode_steps * waters.longer);
-    const std::string name = waters.scenario != nullptr ? waters.scenario : scenario;
-    std::vector<std::string> overrides = {
-        "agents=" + std::to_string(waters.agents),
-        "target.count=" + std::to_string(waters.targets),
-        "time.episode_steps=" + steps,
-        "time.tail_steps=" + steps,
-    };
-    if (config.leaving && k % 4 == 3) {
-      const std::string leave = "[" + std::to_string(config.episode_steps / 3);
-      const std::string join = "[" + std::to_string(2 * config.episode_steps / 3);
-      const std::string second = waters.agents >= 5 ? ", " + leave + ", 1]" : "";
-      overrides.push_back("fleet.leave=[" + leave + ", 0]" + second + "]");
-      overrides.push_back("fleet.join=[" + join + ", 0]]");
-    }
-    overrides.insert(overrides.end(), SwarmRewardKeys().begin(), SwarmRewardKeys().end());
-    mixture.push_back({name + "/" + waters.condition + "/" + std::to_string(waters.agents),
-                       LoadNamedScenario(folder, name, waters.condition, overrides)});
-  }
-  return mixture;
-}
-
-std::vector<SwarmTask> FieldValidation(const std::string& folder, const std::string& scenario) {
-  std::vector<SwarmTask> tasks;
-  for (const char* condition :
-       {"nominal", "combined_stress", "fast_target", "strong_current", "sparse"}) {
-    tasks.push_back({condition, LoadNamedScenario(folder, scenario, condition)});
-  }
-  for (const char* name : {"hunt", "search", "search_evasive"}) {
-    tasks.push_back({name, LoadNamedScenario(folder, name, "nominal")});
-  }
-  return tasks;
 }
 
 }  // namespace stg::learn

@@ -115,7 +115,8 @@ void SwarmShard::Observe(const SwarmActor& actor, std::uint32_t collection, int 
       if (fresh_) {
         for (int k = 0; k < size; ++k) of.noise[k] = static_cast<float>(random.Normal());
       }
-      of.keep = static_cast<float>(std::exp(-agent::kCommandPeriod_s / config_.noise_time_s));
+      of.keep = static_cast<float>(
+          std::exp(-agent::CommandPeriod_s(env_.scenario().run) / config_.noise_time_s));
     }
     int choice = 0;
     float command[agent::kCommandNumbers];

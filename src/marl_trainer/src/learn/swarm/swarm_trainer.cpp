@@ -74,8 +74,11 @@ SwarmTrainer::SwarmTrainer(std::vector<SwarmTask> mixture, std::vector<SwarmTask
 }
 
 std::int64_t SwarmTrainer::StepsOfCollection() const {
-  const double decisions = agent::kCommandPeriod_s / mixture_.front().scenario.run.decision_dt_s();
-  return std::llround(config_.horizon * decisions) * config_.envs;
+  std::int64_t decisions = 0;
+  for (const SwarmTask& task : mixture_) {
+    decisions += agent::DecisionsPerCommand(task.scenario.run) * kShardEnvs;
+  }
+  return config_.horizon * decisions;
 }
 
 std::string SwarmTrainer::ConfigText() const {
@@ -88,7 +91,7 @@ std::string SwarmTrainer::ConfigText() const {
   copy.Describe(&table);
   nlohmann::ordered_json json;
   DumpOptions(table, &json);
-  json["waters"] = waters;
+  json["scenarios"] = waters;
   return json.dump(2) + "\n";
 }
 
@@ -155,9 +158,9 @@ void SwarmTrainer::Validate() {
   o.episodes = config_.validation_episodes;
   o.seed = config_.validation_seed;
   double sum = 0.0;
-  const std::vector<std::string> columns = {"band_share",   "spread",        "whole_lost_rate",
-                                            "near_pairs",   "estimate_rmse", "return",
-                                            "time_to_band", "tracking_error"};
+  const std::vector<std::string> columns = {"band_share",   "spread",         "whole_lost_rate",
+                                            "near_pairs",   "estimate_rmse",  "return",
+                                            "time_to_band", "tracking_error", "own_rmse"};
   if (table_.empty()) {
     table_ = "steps,seconds,task";
     for (const std::string& c : columns) table_ += "," + c;

@@ -5,11 +5,13 @@
 
 namespace stg::agent {
 
-/// A command lasts this long: nothing new arrives in between, because the range sensor looks every
-/// 5 s.
+/// A command lasts this long, or one decision if that is longer: nothing new arrives in between,
+/// because the range sensor of the field looks every 5 s.
 inline constexpr double kCommandPeriod_s = 5.0;
-/// Number of decisions during a command.
+/// Number of decisions during a command, at least 1.
 int DecisionsPerCommand(const RunConfig& run);
+/// Time between two commands of a scenario [s].
+double CommandPeriod_s(const RunConfig& run);
 
 /// Guidance of a `guidance` command: +-60 m of radius; +-0.8 m/s; +-60 deg of phase; clockwise from
 /// -0.8 down; +-15 m of depth. A larger radius grows by three more standard deviations of the

@@ -11,7 +11,7 @@
 namespace stg::learn {
 
 /// Hyperparameters of learning with swarms of any size (docs/entities.md). A policy step is one
-/// command and lasts 5 s.
+/// command and lasts 5 s, or one decision if that is longer.
 struct SwarmConfig {
   std::uint64_t seed = 0;
   std::int64_t steps = 2'048'000;  ///< decisions of a swarm; each lasts 1 s in the field
@@ -23,6 +23,9 @@ struct SwarmConfig {
   bool last_command = false;
   bool free_assignment = false;  ///< some scenarios have targets that the AUVs choose freely
   bool leaving = true;           ///< in some scenarios AUVs leave and join
+  /// Kinds of waters in place of the mixture of the field, "name:condition:AUVs:targets" with
+  /// commas between them; what is left out is the scenario's own. Empty: the mixture.
+  std::string waters;
 
   int envs = 128;
   int horizon = 40;         ///< policy steps of one collection
@@ -65,11 +68,17 @@ struct SwarmTask {
 
 /// The mixture of the field for `count` shards: 1 to 8 AUVs, one or two targets, stress conditions,
 /// search and hunt. The reward of the training replaces the scenario's. Throws UserError for
-/// options that do not fit.
+/// options that do not fit. With `config.waters` these take the places of the mixture in turn.
 /// @param folder folder of the shipped scenarios
+/// @param overrides scenario overrides "key=value" of every kind of waters; they replace the
+/// reward of the training, too
 std::vector<SwarmTask> FieldMixture(const std::string& folder, const std::string& scenario,
-                                    const SwarmConfig& config, int count);
-/// Tasks of the validation: the scenario itself and its stress conditions, unchanged.
-std::vector<SwarmTask> FieldValidation(const std::string& folder, const std::string& scenario);
+                                    const SwarmConfig& config, int count,
+                                    const std::vector<std::string>& overrides = {});
+/// Tasks of the validation: the scenario itself and its stress conditions, or `config.waters`. Only
+/// the overrides change them.
+std::vector<SwarmTask> FieldValidation(const std::string& folder, const std::string& scenario,
+                                       const SwarmConfig& config,
+                                       const std::vector<std::string>& overrides = {});
 
 }  // namespace stg::learn
