@@ -58,6 +58,12 @@ class Medium(unittest.TestCase):
         self.assertEqual(len(agents), AGENTS)
         self.assertEqual(foreign_subscriptions(subscribers), [])
 
+    def test_without_a_search_map_no_agent_offers_one(self):
+        self.summary.wait(50.0)
+        topics = {topic for topic, _ in rosgraph.Master("/stg_test").getPublishedTopics("")}
+        self.assertIn("/auv_0/acoustic/tx", topics)
+        self.assertNotIn("/auv_0/search_map", topics)
+
     def test_check_of_subscriptions_finds_ground_truth_and_neighbours(self):
         truth = [["/target_0/odom", ["/auv_1/agent"]]]
         neighbour = [["/auv_0/sensor_frame", ["/auv_0/agent", "/auv_1/agent"]]]

@@ -44,6 +44,13 @@ def published_markers():
     return {f"/{node.get('name')}/{name}" for name in names}
 
 
+def search_maps():
+    """Returns the topic of AUV 0's search map, as the header of the agent names it."""
+    header = (SOURCES / "stg_agent" / "src" / "nodes" / "include" / "stg_agent" / "nodes" / "topics.hpp").read_text()
+    (name,) = re.findall(r'constexpr char kSearchMap\[\] = "(\w+)"', header)
+    return {f"/auv_0/{name}"}
+
+
 def marker_namespaces():
     """Returns the namespaces of the markers."""
     source = "".join(path.read_text() for path in sorted(MARKERS.rglob("*.cpp")))
@@ -60,6 +67,18 @@ def published_frames():
             parts = [part.strip('"') for part in text.split(" + ")]
             patterns.add("".join(r"\d+" if "to_string" in part else part for part in parts))
     return patterns
+
+
+def view_for(view, scenario):
+    """Returns the content of a view as view.py opens it for a scenario."""
+    with tempfile.TemporaryDirectory() as folder:
+        asked, made = pathlib.Path(folder) / "s.yaml", pathlib.Path(folder) / "v.rviz"
+        asked.write_text(yaml.safe_dump(scenario))
+        subprocess.run(
+            ["/usr/bin/python3", SOURCES / "stg_monitor" / "scripts" / "view.py", view, "--scenario-file",
+             asked, "--write", made], check=True,
+        )  # fmt: skip
+        return yaml.safe_load(made.read_text())
 
 
 class RvizFiles(unittest.TestCase):
@@ -81,8 +100,9 @@ class RvizFiles(unittest.TestCase):
                 self.assertIn(shown, known, name)
 
     def test_every_topic_shown_is_published(self):
-        published = published_markers()
-        self.assertEqual(len(published), 3)
+        markers = published_markers()
+        self.assertEqual(len(markers), 3)
+        published = markers | search_maps()
         shown = set()
         for view in rviz_files().values():
             for display in displays(view["Visualization Manager"]):
@@ -118,15 +138,7 @@ class RvizFiles(unittest.TestCase):
 
     def test_the_camera_fits_the_scenario(self):
         def camera(view, scenario):
-            with tempfile.TemporaryDirectory() as folder:
-                asked, made = pathlib.Path(folder) / "s.yaml", pathlib.Path(folder) / "v.rviz"
-                asked.write_text(yaml.safe_dump(scenario))
-                subprocess.run(
-                    ["/usr/bin/python3", SOURCES / "stg_monitor" / "scripts" / "view.py", view, "--scenario-file",
-                     asked, "--write", made], check=True,
-                )  # fmt: skip
-                content = yaml.safe_load(made.read_text())
-            return content["Visualization Manager"]["Views"]["Current"]
+            return view_for(view, scenario)["Visualization Manager"]["Views"]["Current"]
 
         def shown_m(view, scenario):
             """Half the height of what the camera sees at its focal point."""
@@ -156,6 +168,16 @@ class RvizFiles(unittest.TestCase):
         shipped = rviz_files()["follow.rviz"]["Visualization Manager"]["Views"]["Current"]
         self.assertEqual(camera("follow", box)["Distance"], shipped["Distance"])
         self.assertEqual(camera("follow", {})["Distance"], shipped["Distance"])
+
+    def test_the_search_map_is_shown_where_there_is_one(self):
+        def maps(view, scenario):
+            shown = displays(view_for(view, scenario)["Visualization Manager"])
+            return [(d["Enabled"], d["Value"]) for d in shown if d["Class"] == "rviz/Map"]
+
+        for view in ("overview", "follow"):
+            self.assertEqual(maps(view, {"track": {"search_cell_m": 150.0}}), [(True, True)])
+            for without in ({}, {"track": {"search_cell_m": 0.0}}):
+                self.assertEqual(maps(view, without), [(False, False)])
 
     def test_white_captions_can_be_read_over_every_depth(self):
         source = (MARKERS / "parts" / "terrain_markers.cpp").read_text().partition("kStops[] = {")[2]

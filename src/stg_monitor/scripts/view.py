@@ -3,7 +3,8 @@
 
 The views are written for the paper's box of two metres. The scenario that runs, or is replayed,
 says how large the region is and how far AUVs stay from their target, and the camera's distances
-follow. Everything else is the view as shipped.
+follow. It also says whether the agents have search maps; without them, the display of the map is
+switched off, because rviz would warn that no map arrives. Everything else is the view as shipped.
 """
 
 import stg_common.quiet_start  # first import: Ctrl-C is blocked until here, see view.launch
@@ -79,6 +80,14 @@ def fit(config, scale):
     camera["Focal Point"] = {axis: x * scale for axis, x in camera["Focal Point"].items()}
 
 
+def show_maps(config, scenario):
+    """Switches the displays of search maps on if the scenario has maps, and off otherwise."""
+    has_map = number(scenario["track"], "search_cell_m", 0.0) > 0.0
+    for display in config["Visualization Manager"]["Displays"]:
+        if display["Class"] == "rviz/Map":
+            display["Enabled"] = display["Value"] = has_map
+
+
 def running_scenario():
     """Returns the text of the graph's scenario, or of an empty one after WAIT_S."""
     heard = threading.Event()
@@ -116,6 +125,7 @@ def main():
     package = pathlib.Path(rospkg.RosPack().get_path("stg_bringup"))
     config = yaml.safe_load((package / "rviz" / f"{arguments.view}.rviz").read_text())
     fit(config, camera_scale(arguments.view, scenario))
+    show_maps(config, scenario)
     if arguments.view == "overview" and shown_half_extent(scenario) < half_extent(scenario):
         # The content of the overview then moves with the target.
         config["Visualization Manager"]["Views"]["Current"]["Target Frame"] = TARGET_FRAME

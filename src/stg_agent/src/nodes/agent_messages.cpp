@@ -1,10 +1,18 @@
 #include "agent_messages.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "auv_dynamics/nodes/conversions.hpp"
+#include "auv_dynamics/nodes/topics.hpp"
 
 namespace stg::nodes {
+namespace {
+
+/// Time between two messages of the search map [ns]. The AUVs of `search` look every 5 s.
+constexpr TimeNs kSearchMapPeriod = 5'000'000'000;
+
+}  // namespace
 
 bool FiniteFrame(const auv_msgs::SensorFrame& m) {
   return FinitePose(m.pose) && FiniteTwist(m.twist) && Finite(m.position_std) &&
@@ -93,6 +101,38 @@ void SetTaskState(const agent::Agent& agent, const agent::AgentOutput& output,
     m->neighbour_age = m->neighbours.empty() ? age : std::min(m->neighbour_age, age);
     m->neighbours.push_back(static_cast<std::uint32_t>(id));
   }
+}
+
+bool ShowsSearchMap(TimeNs time, TimeNs step) {
+  return time < step || time / kSearchMapPeriod != (time - step) / kSearchMapPeriod;
+}
+
+bool SetSearchMap(const agent::SearchMemory& search, const ros::Time& stamp,
+                  nav_msgs::OccupancyGrid* m) {
+  using agent::SearchMap;
+  const SearchMap& map = search.map();
+  double largest = 0.0;
+  for (int r = 0; r < SearchMap::kSide; ++r) {
+    for (int c = 0; c < SearchMap::kSide; ++c) largest = std::max(largest, map.mass(r, c));
+  }
+  if (!(largest > 0.0)) return false;
+  m->header.frame_id = frames::kWorld;
+  m->header.stamp = m->info.map_load_time = stamp;
+  m->info.resolution = static_cast<float>(map.cell_m());
+  m->info.width = m->info.height = SearchMap::kSide;
+  // The corner of cell (0, 0), not its middle.
+  m->info.origin.position.x = map.x(0) - 0.5 * map.cell_m();
+  m->info.origin.position.y = map.y(0) - 0.5 * map.cell_m();
+  m->info.origin.position.z = 0.0;
+  m->info.origin.orientation.w = 1.0;
+  m->data.clear();
+  for (int r = 0; r < SearchMap::kSide; ++r) {
+    for (int c = 0; c < SearchMap::kSide; ++c) {
+      const double percent = 100.0 * map.mass(r, c) / largest;
+      m->data.push_back(map.Inside(r, c) ? static_cast<std::int8_t>(std::lround(percent)) : -1);
+    }
+  }
+  return true;
 }
 
 }  // namespace stg::nodes

@@ -2,6 +2,7 @@
 
 #include <auv_msgs/SensorFrame.h>
 #include <auv_msgs/TaskState.h>
+#include <nav_msgs/OccupancyGrid.h>
 
 #include <vector>
 
@@ -24,5 +25,22 @@ std::vector<dynamics::Cue> OtherCues(const auv_msgs::SensorFrame& message, const
 /// and step.
 void SetTaskState(const agent::Agent& agent, const agent::AgentOutput& output,
                   auv_msgs::TaskState* message);
+
+/// Whether the step at `time` of an episode, which begins `step` after the last one, is one that
+/// shows the search map: the first step, and one in every 5 s.
+bool ShowsSearchMap(TimeNs time, TimeNs step);
+
+/// Writes a search map as a grid whose row 0 is in the south and whose column 0 is in the west. The
+/// value of a cell is its probability as a share of the largest one, in percent: the cell in which
+/// the target most likely is has 100. So values of two messages, or of two AUVs, cannot be
+/// compared. A cell outside of the workspace belongs to no map and has -1.
+///
+/// The frame is world, but the cells are where the AUV's reckoned navigation puts them, as the
+/// agent uses them: the error of that navigation is in the map, and no localization corrects it.
+/// The grid lies at the surface, because the map has no depth and that of a datum is uncertain.
+/// @param stamp clock time of the agent's last Observe
+/// @return false, and no grid: no datum has arrived, so there is no map
+bool SetSearchMap(const agent::SearchMemory& search, const ros::Time& stamp,
+                  nav_msgs::OccupancyGrid* message);
 
 }  // namespace stg::nodes

@@ -81,6 +81,10 @@ void AgentNode::Advertise() {
                   [this](auto* message) { return SetStep(message); });
   entity_step_.Advertise(own(topics::kEntityStep), kQueue,
                          [this](auto* message) { return SetEntityStep(message); });
+  if (agent_.view().search() == nullptr) return;
+  search_map_.Advertise(own(topics::kSearchMap), kQueue, [this](auto* message) {
+    return decided_ && SetSearchMap(*agent_.view().search(), decided_->header.stamp, message);
+  });
 }
 
 void AgentNode::Spin() {
@@ -269,6 +273,7 @@ void AgentNode::ReportDecision() {
   task_.Publish();
   step_.Publish();
   if (drew_) entity_step_.Publish();
+  if (ShowsSearchMap(NsOf(stamp) - start_, period_)) search_map_.Publish();
 }
 
 bool AgentNode::SetVelocity(geometry_msgs::TwistStamped* message) const {
@@ -279,23 +284,25 @@ bool AgentNode::SetVelocity(geometry_msgs::TwistStamped* message) const {
   return true;
 }
 
-bool AgentNode::SetTask(auv_msgs::TaskState* message) const {
+template <class Message>
+bool AgentNode::SetReport(const std::string& frame, Message* message) const {
   if (!decided_ || unreported_) return false;
   message->header.stamp = decided_->header.stamp;
-  message->header.frame_id = frames::kWorld;
+  message->header.frame_id = frame;
   message->episode = decided_->episode;
   message->step = decided_->step;
+  return true;
+}
+
+bool AgentNode::SetTask(auv_msgs::TaskState* message) const {
+  if (!SetReport(frames::kWorld, message)) return false;
   message->policy_id = policy_id_;
   SetTaskState(agent_, output_, message);
   return true;
 }
 
 bool AgentNode::SetStep(auv_msgs::AgentStep* message) const {
-  if (!decided_ || unreported_) return false;
-  message->header.stamp = decided_->header.stamp;
-  message->header.frame_id = body_frame_;
-  message->episode = decided_->episode;
-  message->step = decided_->step;
+  if (!SetReport(body_frame_, message)) return false;
   message->agent = static_cast<std::uint32_t>(id_);
   message->observation = observation_;
   message->action.assign(action_, action_ + model_.control.action_size());
@@ -306,11 +313,7 @@ bool AgentNode::SetStep(auv_msgs::AgentStep* message) const {
 }
 
 bool AgentNode::SetEntityStep(auv_msgs::EntityStep* message) const {
-  if (!drew_ || unreported_) return false;
-  message->header.stamp = decided_->header.stamp;
-  message->header.frame_id = body_frame_;
-  message->episode = decided_->episode;
-  message->step = decided_->step;
+  if (!drew_ || !SetReport(body_frame_, message)) return false;
   message->agent = static_cast<std::uint32_t>(id_);
   message->policy_id = policy_id_;
   SetDecision(drawn_, agent::CommandSize(decider_.entities->action()), message);

@@ -9,6 +9,7 @@
 #include <auv_msgs/TaskState.h>
 #include <geometry_msgs/TwistStamped.h>
 #include <geometry_msgs/WrenchStamped.h>
+#include <nav_msgs/OccupancyGrid.h>
 #include <ros/node_handle.h>
 
 #include <memory>
@@ -65,6 +66,9 @@ class AgentNode {
   bool SetVelocity(geometry_msgs::TwistStamped* message) const;
   bool SetTask(auv_msgs::TaskState* message) const;
   bool SetStep(auv_msgs::AgentStep* message) const;
+  /// What the messages about a decision have in common.
+  template <class Message>
+  bool SetReport(const std::string& frame, Message* message) const;
   /// The last command that was drawn with a policy over entities.
   bool SetEntityStep(auv_msgs::EntityStep* message) const;
   void Report(diagnostic_updater::DiagnosticStatusWrapper& status);
@@ -106,6 +110,7 @@ class AgentNode {
   OnDemand<auv_msgs::TaskState> task_;
   OnDemand<auv_msgs::AgentStep> step_;
   OnDemand<auv_msgs::EntityStep> entity_step_;
+  OnDemand<nav_msgs::OccupancyGrid> search_map_;
   std::vector<ros::Subscriber> subscribers_;
   ros::ServiceServer load_policy_;
 

@@ -126,7 +126,7 @@ void SearchMap::Normalise() {
   for (int r = 0; r < kSide; ++r) {
     for (int c = 0; c < kSide; ++c) {
       double& mass = mass_[static_cast<std::size_t>(r * kSide + c)];
-      if (r < row_lo_ || r > row_hi_ || c < column_lo_ || c > column_hi_) mass = 0.0;
+      if (!Inside(r, c)) mass = 0.0;
       total += mass;
     }
   }

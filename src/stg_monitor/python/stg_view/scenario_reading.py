@@ -5,7 +5,7 @@ import math
 from stg_common.files import Damaged
 
 
-SECTIONS = ("workspace", "vehicle", "reward", "sea", "reset", "target")
+SECTIONS = ("workspace", "vehicle", "reward", "sea", "reset", "target", "track")
 
 
 def is_number(value):

@@ -37,6 +37,12 @@ class SearchMap {
   double x(int column) const { return x0_ + (column + 0.5) * cell_m_; }
   double y(int row) const { return y0_ + (row + 0.5) * cell_m_; }
   double half_m() const { return 0.5 * kSide * cell_m_; }
+  /// Side of a cell [m].
+  double cell_m() const { return cell_m_; }
+  /// Whether the middle of a cell is in the workspace. The others belong to no map.
+  bool Inside(int row, int column) const {
+    return row >= row_lo_ && row <= row_hi_ && column >= column_lo_ && column <= column_hi_;
+  }
   /// Probability of a cell; all of them sum up to 1.
   double mass(int row, int column) const {
     return mass_[static_cast<std::size_t>(row * kSide + column)] / total_;

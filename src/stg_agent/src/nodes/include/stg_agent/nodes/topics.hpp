@@ -9,6 +9,7 @@ namespace stg::topics {
 inline constexpr char kTaskState[] = "task_state";
 inline constexpr char kAgentStep[] = "agent_step";
 inline constexpr char kEntityStep[] = "entity_step";
+inline constexpr char kSearchMap[] = "search_map";
 inline constexpr char kLoadPolicy[] = "load_policy";  ///< below the agent node's own name
 
 /// Of each beacon and surface craft.
