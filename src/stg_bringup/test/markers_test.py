@@ -158,6 +158,50 @@ class Markers(unittest.TestCase):
                 self.condition.wait(5.0)
         self.assertTrue(self.shown("overview", "link"))
 
+    def test_open_water_shows_ring_assignment_and_stations(self):
+        def points(namespace, vehicle):
+            (line,) = [m for m in self.shown("overview", namespace) if m.id == vehicle]
+            return [(p.x, p.y, p.z) for p in line.points]
+
+        run = self.run_under_test
+        second = rospy.Publisher("/target_1/odom", nav_msgs.msg.Odometry, queue_size=10, latch=True)
+        stations = [rospy.Publisher(f"/station_{k}/odom", nav_msgs.msg.Odometry, queue_size=10, latch=True)
+                    for k in range(2)]  # fmt: skip
+        places = [(0.5, -0.25, -0.75), (-0.5, 0.125, 0.0)]
+        for k, (station, place) in enumerate(zip(stations, places)):
+            station.publish(synthetic_bag.odometry(f"station_{k}", rospy.Time(1, 0), place, (0, 0)))
+        self.publish_until(lambda: not self.shown("overview", "ring"), "no ring in a box")
+        text = synthetic_bag.SCENARIO.replace("1.0}", "2.0}") + "sea: {open: true}\n"
+        text += "task: {desired_distance_m: 0.25}\ntrack: {lost_std_m: 0.5}\n"
+        second.publish(synthetic_bag.odometry("target_1", rospy.Time(1, 0), (1.5, 1.5, 0.0), (1, 0)))
+        try:
+            # A list of craft alone, as in a scenario without beacons, and one of both.
+            for listed, words in (("crafts: [[0, 0], [1, 1]]", {"craft 0", "craft 1"}),
+                                  ("beacons: [[0, 0, 0]], crafts: [[0, 0]]", {"beacon 0", "craft 1"})):
+                run.scenario.publish(text + "stations: {" + listed + "}\n")
+                self.publish_until(
+                    lambda words=words: {m.text for m in self.shown("overview", "station_label")} == words, words)
+                self.publish_until(lambda: len(self.shown("overview", "ring")) == synthetic_bag.AGENTS, "rings")
+            for station, place in zip(sorted(self.shown("overview", "station"), key=lambda m: m.id), places):
+                p = station.pose.position
+                self.assertEqual((p.x, p.y, p.z), place)
+            self.publish_until(lambda: len(self.shown("overview", "follows")) == synthetic_bag.AGENTS, "lines")
+            for i in range(synthetic_bag.AGENTS):
+                (estimate,) = [m.pose.position for m in self.shown("overview", "estimate") if m.id == i]
+                centre = (estimate.x, estimate.y, estimate.z)
+                for p in points("ring", i):
+                    self.assertAlmostEqual(math.dist(p, centre), 0.25)
+                    self.assertAlmostEqual(p[2], centre[2])
+                (hull,) = [m.pose.position for m in self.shown("overview", "hull") if m.id == i]
+                line = points("follows", i)
+                self.assertLess(math.dist(line[0], (hull.x, hull.y, hull.z)), 1e-9)
+                self.assertLess(math.dist(line[-1], centre), 1e-9)
+            # An estimate that is too uncertain has no ring.
+            run.scenario.publish(text.replace("lost_std_m: 0.5", "lost_std_m: 1.0e-6"))
+            self.publish_until(lambda: not self.shown("overview", "ring"), "no ring")
+        finally:
+            run.scenario.publish(synthetic_bag.SCENARIO.replace("1.0}", "2.0}"))
+
     def test_walls_follow_the_scenario(self):
         def walls():
             points = [p for m in self.shown("overview", "workspace") for p in m.points]

@@ -26,7 +26,7 @@ class Builder : private MarkerList {
     if (style_.whole_workspace) Workspace();
     Targets();
     for (size_t k = 0; k < view_.stations.size(); ++k) {
-      Sphere("station", static_cast<int>(k), view_.stations[k], unit_, Color(0.95, 0.6, 0.1, 0.9));
+      if (view_.stations[k]) Station(static_cast<int>(k), *view_.stations[k]);
     }
     for (size_t i = 0; i < view_.vehicles.size(); ++i) Vehicle(static_cast<int>(i));
     Summary();
@@ -103,6 +103,15 @@ class Builder : private MarkerList {
       }
       Trail("target_trail", id, t.trail, Color(1, 0.15, 0.45), false);
     }
+  }
+
+  /// A beacon, or a craft at the surface. Its number is that of its topic.
+  void Station(int id, const Point& p) {
+    const ColorRGBA colour = Color(0.95, 0.6, 0.1, 0.9);
+    Sphere("station", id, p, unit_, colour);
+    const char* kind = id < view_.scene.beacons ? "beacon " : "craft ";
+    Text("station_label", id, Sum(p, At(0, 0, unit_ + text_)), text_, kind + std::to_string(id),
+         colour);
   }
 
   /// A line along the past positions. Older parts are more transparent.

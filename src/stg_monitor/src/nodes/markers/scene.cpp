@@ -51,6 +51,12 @@ SceneConfig ReadScene(const std::string& yaml) {
   scene.sensing_range_m = positive("sensing", "range_m", scene.sensing_range_m);
   scene.radius_m = positive("vehicle", "radius_m", scene.radius_m);
   scene.decision_s = positive("time", "dt_s", 0.1) * positive("time", "decision_steps", 1.0);
+  scene.desired_distance_m = positive("task", "desired_distance_m", scene.desired_distance_m);
+  scene.lost_std_m = positive("track", "lost_std_m", scene.lost_std_m);
+  if (const YAML::Node stations = root["stations"]) {
+    const YAML::Node beacons = stations["beacons"];
+    if (beacons) scene.beacons = static_cast<int>(beacons.size());
+  }
   if (root["reward"] && root["reward"]["band_m"]) {
     scene.band_lo_m = root["reward"]["band_m"][0].as<double>(scene.band_lo_m);
     scene.band_hi_m = root["reward"]["band_m"][1].as<double>(scene.band_hi_m);

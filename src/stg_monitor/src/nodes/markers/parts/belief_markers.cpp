@@ -31,12 +31,18 @@ class BeliefBuilder : private MarkerList {
       Delete("estimate", id, Marker::SPHERE);
       Delete("estimate_std", id, Marker::SPHERE);
       Delete("follows", id, Marker::LINE_LIST);
+      Delete("ring", id, Marker::LINE_STRIP);
       return;
     }
     if (view_.targets.size() > 1) {
-      Marker line =
-          Lines("follows", id, Marker::LINE_LIST, 0.04 * unit_, PhaseColor(v.phase, 0.35));
-      line.points = {v.pose.position, v.estimate};
+      // A broken line, because trails and links are whole ones.
+      Marker line = Lines("follows", id, Marker::LINE_LIST, 0.12 * unit_, PhaseColor(v.phase, 0.9));
+      for (int k = 0; k < 2 * kDashes; k += 2) {
+        for (const int end : {k, k + 1}) {
+          line.points.push_back(
+              Between(v.pose.position, v.estimate, static_cast<double>(end) / (2 * kDashes - 1)));
+        }
+      }
       Add(std::move(line));
     }
     Sphere("estimate", id, v.estimate, 0.3 * unit_, PhaseColor(v.phase, 0.9));
@@ -45,6 +51,13 @@ class BeliefBuilder : private MarkerList {
     m.scale.x = m.scale.y = m.scale.z = std::max(2.0 * v.estimate_std, 0.3 * unit_);
     ShapeAs(v.covariance, &m);
     Add(std::move(m));
+    // Laws go to the circle only in open water, and only while they know where its middle is.
+    if (view_.scene.sea.open && v.estimate_std <= view_.scene.lost_std_m) {
+      Circle("ring", id, v.estimate, view_.scene.desired_distance_m, 0.04 * unit_,
+             PhaseColor(v.phase, 0.8));
+    } else {
+      Delete("ring", id, Marker::LINE_STRIP);
+    }
   }
 
   /// Turns a sphere into the ellipsoid of one standard deviation; its axes have a visible minimum
@@ -94,6 +107,7 @@ class BeliefBuilder : private MarkerList {
 
   /// A detection is shown for at least this simulated time.
   static constexpr double kShown_s = 0.3;
+  static constexpr int kDashes = 16;
 
   const SwarmView& view_;
   const double unit_;

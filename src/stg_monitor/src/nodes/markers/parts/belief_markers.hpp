@@ -7,9 +7,11 @@
 
 namespace stg::nodes {
 
-/// Draws estimates of the targets with the ellipsoid of one standard deviation, and fresh
-/// detections. A detection is a line in the measured direction, a horizontal circle at the measured
-/// range, or both if the sensor measures both.
+/// Draws estimates of the targets with the ellipsoid of one standard deviation, the circle of the
+/// radius d* around each of them, and fresh detections. The AUVs keep their places on this circle,
+/// or near it: a law may choose another radius. With several targets, a broken line leads from each
+/// AUV to the estimate of the target that it follows. A detection is a line in the measured
+/// direction, a horizontal circle at the measured range, or both if the sensor measures both.
 void AddBeliefMarkers(const SwarmView& view, const MarkerStyle& style,
                       visualization_msgs::MarkerArray* array);
 

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <deque>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,7 +28,10 @@ struct SceneConfig {
   double band_lo_m = 0.010, band_hi_m = 0.015;
   double radius_m = 0.011;
   double decision_s = 0.1;
-  dynamics::SeaConfig sea;  ///< if it is open water, there are no walls
+  double desired_distance_m = 0.015;  ///< d*
+  double lost_std_m = 1.0;            ///< a less certain estimate is that of a lost target
+  int beacons = 0;                    ///< stations with a lower index are beacons, others craft
+  dynamics::SeaConfig sea;            ///< if it is open water, there are no walls
 };
 
 /// Values of auv_msgs/TaskState, and one for an AUV without a message so far.
@@ -95,7 +99,8 @@ struct SwarmView {
   std::uint32_t episode = 0, step = 0;
   std::vector<VehicleView> vehicles;
   std::vector<MovingTarget> targets;
-  std::vector<geometry_msgs::Point> stations;     ///< beacons and surface craft
+  /// Beacons and surface craft; empty: no position of it has arrived.
+  std::vector<std::optional<geometry_msgs::Point>> stations;
   std::map<std::pair<int, int>, LinkView> links;  ///< by (source, destination)
   std::deque<PacketEvent> packets;
   std::deque<CarrierView> carriers;
