@@ -41,6 +41,7 @@ int main(int argc, char** argv) {
     }
     options.log = &std::cout;
     options.stop = &stg::HeedStopSignals();
+    options.overrides = overrides;
     const std::string folder = stg::config::ScenarioFolder();
     stg::learn::SwarmTrainer trainer(
         stg::learn::FieldMixture(folder, scenario, config, config.envs / 8, overrides),

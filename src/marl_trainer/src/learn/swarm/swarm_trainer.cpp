@@ -91,6 +91,7 @@ std::string SwarmTrainer::ConfigText() const {
   copy.Describe(&table);
   nlohmann::ordered_json json;
   DumpOptions(table, &json);
+  json["set"] = options_.overrides;
   json["scenarios"] = waters;
   return json.dump(2) + "\n";
 }

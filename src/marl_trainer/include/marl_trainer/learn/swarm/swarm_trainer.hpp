@@ -26,6 +26,7 @@ class SwarmTrainer {
   struct Options {
     std::string out;
     bool resume = false;
+    std::vector<std::string> overrides;  ///< of the scenarios, "key=value", for config.json
     std::string start_from;  ///< folder of another training; this one starts with its networks
     int workers = 1;
     std::ostream* log = nullptr;
