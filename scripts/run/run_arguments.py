@@ -22,7 +22,7 @@ ANY_SEED = -1  # this default means the scenario's seed
 # Numbers that come from the scenario if they are not given.
 NUMBERS_OR_NOTHING = ("latitude", "longitude")
 # Numbers that the program chooses if they are `auto`.
-NUMBERS_OR_AUTO = ("lr", "critic_lr", "epochs", "critic_updates", "log_std")
+NUMBERS_OR_AUTO = ("lr", "critic_lr", "epochs", "critic_updates", "log_std", "noise_time")
 # Arguments whose default is an expression, which roslaunch computes, and a value that shows their kind.
 COMPUTED = {"open_water": "false", "target_lost_rate": "0.0"}
 # An argument without effect unless another argument of the launch file has this value.

@@ -7,6 +7,7 @@
 #include <ros/ros.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <map>
 #include <string>
@@ -87,6 +88,42 @@ void ExpectSame(const auv_msgs::EntityStep& flown, const learn::SwarmCommand& ex
   EXPECT_EQ(flown.log_probability, m.log_probability);
 }
 
+/// From the messages alone: z(t + 5 s) - z(t) of noise z with variance 1 has the variance
+/// 2 (1 - exp(-5 / 60)) = 0.16, and independent noise has 2.
+void ExpectCorrelatedNoise(const Heard& run, const agent::EntityPolicy& untrained) {
+  const auto size = static_cast<std::size_t>(agent::CommandSize(untrained.action()));
+  double squares = 0.0, changes = 0.0, numbers = 0.0, pairs = 0.0;
+  std::map<std::pair<std::uint32_t, int>, std::pair<std::uint32_t, std::vector<double>>> last;
+  for (const auto& [key, m] : run.commands) {
+    if (m.policy_id.find("-recorded-0-") == std::string::npos) continue;
+    agent::EntityDecision decision;
+    ASSERT_TRUE(DecisionOf(m, &decision));
+    float logits[agent::kMostChoices], means[agent::kMostChoices * agent::kCommandNumbers];
+    untrained.Choices(decision.entities, logits, means);
+    std::vector<double> z;
+    for (std::size_t k = 0; k < size; ++k) {
+      const float mean = means[static_cast<std::size_t>(decision.choice) * size + k];
+      z.push_back(static_cast<double>(decision.command[k] - mean) /
+                  std::exp(static_cast<double>(untrained.parameters().log_std[k])));
+      squares += z.back() * z.back();
+      numbers += 1.0;
+    }
+    const auto& [episode, step, id] = key;
+    const auto before = last.find({episode, id});
+    if (before != last.end() && before->second.first + 5 == step) {
+      for (std::size_t k = 0; k < size; ++k) {
+        changes += (z[k] - before->second.second[k]) * (z[k] - before->second.second[k]);
+        pairs += 1.0;
+      }
+    }
+    last[{episode, id}] = {step, z};
+  }
+  ASSERT_GT(pairs, 200.0);
+  EXPECT_NEAR(changes / pairs, 2.0 * (1.0 - std::exp(-5.0 / 60.0)), 0.05);
+  // About 40 independent numbers (AUVs x numbers x episodes), whose squares have variance 2.
+  EXPECT_NEAR(squares / numbers, 1.0, 5.0 * std::sqrt(2.0 / 40.0));
+}
+
 TEST(TrainField, RecordsAndLearnsWhatTheEnvironmentDoes) {
   Scenario scenario = LoadScenarioParameters<Scenario>(config::Scope::kWhole);
   const std::string file = TextParameter("out", "") + "/policy_last.onnx";
@@ -125,6 +162,8 @@ TEST(TrainField, RecordsAndLearnsWhatTheEnvironmentDoes) {
   }
   ASSERT_EQ(rollouts.size(), used);
   EXPECT_GT(rows, 0) << "no AUV knew a neighbour";
+  EXPECT_EQ(learned.parameters().noise_time_s, 60.0);
+  ExpectCorrelatedNoise(run, learner.Policy({}));
 
   const std::vector<float> untrained = learner.Policy({}).parameters().numbers;
   WorkerPool pool(1);

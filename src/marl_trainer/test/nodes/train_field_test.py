@@ -88,7 +88,7 @@ class TrainField(unittest.TestCase):
         text = self.refused(f"_network:={self.network}", "_critic_lr:=0.001")
         self.assertIn(f"parameter critic_lr: belongs to the network layers, but the network is {self.network}",
                       text)
-        for name in ("critic_updates", "log_std"):
+        for name in ("critic_updates", "log_std", "noise_time", "last_command"):
             text = self.refused("_network:=layers", f"_{name}:=1")
             self.assertIn(f"parameter {name}: belongs to the networks pool and graph", text)
         for network, name in (("layers", "lr_final"), ("layers", "imitate"), (self.network, "average")):
@@ -100,6 +100,20 @@ class TrainField(unittest.TestCase):
         self.assertIn("parameter open_water: must be true for the scenario", text)
         text = self.refused(f"_network:={self.network}", "_epoch:=3")
         self.assertIn("parameter epoch: this node does not read it, did you mean epochs?", text)
+
+    def test_3c_an_impossible_noise_time_is_refused(self):
+        for value, part in (("-1", "out of range"), ("1e5", "out of range"), ("a minute", "expected a number")):
+            text = self.refused(f"_network:={self.network}", f"_noise_time:={value}")
+            self.assertRegex(text, f"noise[_-]time: .*{part}")
+
+    def test_3d_a_policy_that_sees_its_last_command_needs_a_training_that_allows_it(self):
+        seeing = self.out / "seeing"
+        words = (f"_network:={self.network}", "_noise_time:=0", "_last_command:=true")
+        self.assertRegex(self.learn("seeing", seeing, *words), r"update   1 ")
+        policy = seeing / "policy_last.onnx"
+        self.assertNotIn(b"stg.noise_time_s", policy.read_bytes())
+        self.assertIn(b"stg.noise_time_s", (self.out / "policy_last.onnx").read_bytes())
+        self.assertIn("uses an input that this training withholds", self.refused(f"_start_policy:={policy}"))
 
     def test_4_a_policy_without_its_deviations_is_refused(self):
         broken = self.out / "broken.onnx"

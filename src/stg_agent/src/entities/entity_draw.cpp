@@ -15,7 +15,18 @@ void LogShares(const float* logits, int count, float* log_shares) {
   for (int k = 0; k < count; ++k) log_shares[k] = logits[k] - (most + std::log(sum));
 }
 
+float NoiseKept(const RunConfig& run, double noise_time_s) {
+  if (noise_time_s <= 0.0) return 0.0F;
+  return static_cast<float>(std::exp(-CommandPeriod_s(run) / noise_time_s));
+}
+
 float DrawCommand(const CommandDistribution& of, Random* random, int* choice, float* command) {
+  if (of.keep > 0.0F && !of.noise->begun) {
+    for (int k = 0; k < of.size; ++k) {
+      of.noise->values[static_cast<std::size_t>(k)] = static_cast<float>(random->Normal());
+    }
+    of.noise->begun = true;
+  }
   *choice = 0;
   float log_density = 0.0F;
   if (of.chooses) {
@@ -33,8 +44,9 @@ float DrawCommand(const CommandDistribution& of, Random* random, int* choice, fl
   if (of.keep <= 0.0F) return log_density + SampleGaussian(of.log_std, of.size, random, command);
   const float fresh = std::sqrt(1.0F - of.keep * of.keep);
   for (int k = 0; k < of.size; ++k) {
-    of.noise[k] = of.keep * of.noise[k] + fresh * static_cast<float>(random->Normal());
-    command[k] += std::exp(of.log_std[k]) * of.noise[k];
+    float& noise = of.noise->values[static_cast<std::size_t>(k)];
+    noise = of.keep * noise + fresh * static_cast<float>(random->Normal());
+    command[k] += std::exp(of.log_std[k]) * noise;
   }
   return log_density + static_cast<float>(GaussianLogDensity(mean, of.log_std, command, of.size));
 }
@@ -67,6 +79,8 @@ bool FlyExploring(const EntityPolicy& policy, const AgentView& agent, Random* ra
     of.means = means;
     of.log_std = policy.parameters().log_std.data();
     of.size = CommandSize(policy.action());
+    of.keep = NoiseKept(agent.model().run, policy.parameters().noise_time_s);
+    of.noise = &agent.memory().noise;
     decision->log_probability = DrawCommand(of, random, &decision->choice, decision->command);
     TakeDecision(agent, decision->entities, policy.action(), of.chooses, decision->choice,
                  decision->command);

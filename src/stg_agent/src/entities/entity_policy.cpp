@@ -111,6 +111,9 @@ EntityPolicy::EntityPolicy(Parameters parameters)
   for (const float s : parameters_.log_std) {
     if (!std::isfinite(s)) throw UserError("policy: a deviation is not finite");
   }
+  if (!(parameters_.noise_time_s >= 0.0 && parameters_.noise_time_s <= kMaxNoiseTime_s)) {
+    throw UserError("policy: the correlation time of the exploration is not from 0 to 10000 s");
+  }
   parameters_.metadata.observation_layout = kEntityLayout;
   parameters_.metadata.action_interface = EntityActionName(parameters_.action);
   parameters_.metadata.action_scale = 1.0;

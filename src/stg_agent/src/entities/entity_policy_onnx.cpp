@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "../policy/policy_onnx.hpp"
+#include "auv_common/config/value.hpp"
 #include "auv_common/durable_file.hpp"
 #include "auv_common/error.hpp"
 #include "auv_common/names.hpp"
@@ -83,6 +84,7 @@ onnx::ModelProto ModelOf(const EntityPolicy::Parameters& p) {
     log_std += (log_std.empty() ? "" : " ") + ExactText(static_cast<double>(s));
   }
   put("stg.log_std", log_std);
+  if (p.noise_time_s != 0.0) put("stg.noise_time_s", config::FormatNumber(p.noise_time_s));
   for (const auto& [name, value] : m.metrics) put(kEntityMetric + name, value);
   put("stg.checksum", "3:" + ChecksumOf(BytesOf(model)));
   return model;
@@ -144,6 +146,14 @@ class EntityReader {
       Require(end != at, "metadata 'stg.log_std' is not a list of numbers");
       at = end;
     }
+    // Absent if the noise of every command is independent, as in older files.
+    if (properties_.count("stg.noise_time_s") == 0) return;
+    const std::string& time = Property("stg.noise_time_s");
+    char* end = nullptr;
+    p->noise_time_s = std::strtod(time.c_str(), &end);
+    Require(end != time.c_str() && *end == '\0' && p->noise_time_s > 0.0 &&
+                p->noise_time_s <= EntityPolicy::kMaxNoiseTime_s,
+            "metadata 'stg.noise_time_s' is not a time from 0 to 10000 s");
   }
 
   /// The constants are in the order in which the writer writes them.

@@ -91,36 +91,81 @@ TEST(EntityDraw, LogDensityIsThatOfTheDraw) {
   }
 }
 
-TEST(EntityDraw, CorrelatedNoiseHasTheSameDensityAndItsCorrelation) {
-  const float mean = 0.3F, log_std = -1.0F;
-  float noise = 0.0F;
-  CommandDistribution of;
-  of.means = &mean;
-  of.log_std = &log_std;
-  of.size = 1;
-  of.keep = 0.8F;
-  of.noise = &noise;
-  constexpr int kBefore = 100, kDraws = 100000;
-  double squares = 0.0, products = 0.0, last = 0.0;
-  for (std::uint32_t d = 0; d < kBefore + kDraws; ++d) {
-    Random random(4, Stream::kPolicy, 0, d, 0);
+RunConfig RunOfDecisions(double decision_s) {
+  RunConfig run;
+  run.time.dt_s = decision_s;
+  run.time.decision_steps = 1;
+  return run;
+}
+
+/// The noise of commands with a correlation time, divided by its deviation.
+class NoisyCommands {
+ public:
+  NoisyCommands(double noise_time_s, std::uint32_t episode) : episode_(episode) {
+    of_.means = &mean_;
+    of_.log_std = &log_std_;
+    of_.size = 1;
+    of_.keep = NoiseKept(RunOfDecisions(1.0), noise_time_s);
+    of_.noise = &noise_;
+  }
+  double Next() {
+    Random random(4, Stream::kPolicy, episode_, command_++, 0);
     int choice = -1;
     float command = 0.0F;
-    const float log_density = DrawCommand(of, &random, &choice, &command);
-    const double sigma = std::exp(double{log_std}), z = (double{command} - double{mean}) / sigma;
-    EXPECT_NEAR(z, double{noise}, 1e-5);
-    ASSERT_NEAR(log_density, std::log(std::exp(-0.5 * z * z) / (sigma * std::sqrt(2.0 * M_PI))),
+    const float log_density = DrawCommand(of_, &random, &choice, &command);
+    const double sigma = std::exp(double{log_std_}), z = (double{command} - double{mean_}) / sigma;
+    EXPECT_NEAR(log_density, std::log(std::exp(-0.5 * z * z) / (sigma * std::sqrt(2.0 * M_PI))),
                 1e-4);
-    if (d >= kBefore) {
-      squares += z * z / kDraws;
-      products += z * last / kDraws;
-    }
-    last = z;
+    return z;
   }
-  // Means over an autoregression: five standard deviations, sqrt(2 (1 + k^2) / (1 - k^2) / n).
-  const double spread = 5.0 * std::sqrt(2.0 * (1.0 + 0.64) / (1.0 - 0.64) / kDraws);
-  EXPECT_NEAR(squares, 1.0, spread);
-  EXPECT_NEAR(products, 0.8, spread);
+
+ private:
+  std::uint32_t episode_, command_ = 0;
+  float mean_ = 0.3F, log_std_ = -1.0F;
+  CommandNoise noise_;
+  CommandDistribution of_;
+};
+
+// The closed form of the process: E[z(t) z(t + s)] = exp(-s / tau), with commands every 5 s.
+TEST(EntityDraw, NoiseHasTheAutocorrelationOfItsTime) {
+  constexpr int kDraws = 200000, kLags[] = {0, 1, 3, 12};
+  for (const double tau_s : {0.0, 20.0, 60.0}) {
+    NoisyCommands commands(tau_s, 0);
+    std::vector<double> z(kDraws);
+    for (double& x : z) x = commands.Next();
+    const double keep = tau_s > 0.0 ? std::exp(-5.0 / tau_s) : 0.0;
+    // A mean of products over such a process: five of its standard deviations, at most
+    // sqrt(2 (1 + k^2) / (1 - k^2) / n).
+    const double spread = 5.0 * std::sqrt(2.0 * (1.0 + keep * keep) / (1.0 - keep * keep) / kDraws);
+    for (const int lag : kLags) {
+      double products = 0.0;
+      for (int k = lag; k < kDraws; ++k) products += z[k] * z[k - lag] / (kDraws - lag);
+      const double expected = lag == 0 ? 1.0 : tau_s > 0.0 ? std::exp(-5.0 * lag / tau_s) : 0.0;
+      EXPECT_NEAR(products, expected, spread) << tau_s << " s, lag " << lag;
+    }
+  }
+}
+
+TEST(EntityDraw, ACommandOfALongDecisionKeepsLessNoise) {
+  EXPECT_NEAR(NoiseKept(RunOfDecisions(30.0), 60.0), std::exp(-0.5), 1e-6);
+  EXPECT_NEAR(NoiseKept(RunOfDecisions(0.5), 60.0), std::exp(-5.0 / 60.0), 1e-6);
+}
+
+// So the log density of the first command is not wrong either.
+TEST(EntityDraw, NoiseHasVarianceOneFromTheFirstCommandOn) {
+  constexpr int kEpisodes = 40000;
+  double squares[3] = {}, products = 0.0;
+  for (std::uint32_t e = 0; e < kEpisodes; ++e) {
+    NoisyCommands commands(60.0, e);
+    const double first = commands.Next(), second = commands.Next(), third = commands.Next();
+    squares[0] += first * first / kEpisodes;
+    squares[1] += second * second / kEpisodes;
+    squares[2] += third * third / kEpisodes;
+    products += first * third / kEpisodes;
+  }
+  const double spread = 5.0 * std::sqrt(2.0 / kEpisodes);
+  for (const double square : squares) EXPECT_NEAR(square, 1.0, spread);
+  EXPECT_NEAR(products, std::exp(-10.0 / 60.0), spread);
 }
 
 TEST(EntityDraw, TheCommandIsTheOneOfTheLargestLogit) {

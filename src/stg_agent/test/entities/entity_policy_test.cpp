@@ -31,6 +31,7 @@ EntityPolicy::Parameters DrawnPolicy(EntityNetwork network = EntityNetwork::kPoo
   Random random(11, Stream::kInit, 0, 0, 0);
   for (float& x : p.numbers) x = static_cast<float>(0.2 * random.Normal());
   p.log_std.assign(static_cast<std::size_t>(CommandSize(action)), -1.25F);
+  p.noise_time_s = 60.1;
   p.metadata.id = "drawn";
   p.metadata.scenario_hash = "0123";
   p.metadata.training_step = 42;
@@ -129,6 +130,7 @@ TEST_P(EntityPolicyFile, ComesBackBitForBit) {
   const EntityPolicy read = EntityPolicy::LoadOnnx(file_);
   EXPECT_EQ(read.parameters().numbers, ours.numbers);
   EXPECT_EQ(read.parameters().log_std, ours.log_std);
+  EXPECT_EQ(read.parameters().noise_time_s, 60.1);
   EXPECT_EQ(read.parameters().network, GetParam());
   EXPECT_EQ(read.metadata().id, "drawn");
   EXPECT_EQ(read.metadata().action_interface, "guidance");
@@ -160,6 +162,14 @@ TEST_P(EntityPolicyFile, IsRefusedWhenAnythingInItIsNotAsWritten) {
       "");
   has(Refusal([](onnx::ModelProto* m) { m->mutable_metadata_props()->RemoveLast(); }), "");
   has(Refusal([](onnx::ModelProto* m) { m->mutable_opset_import(0)->set_version(11); }), "graph");
+  for (const char* time : {"0", "-60.0", "10001.0", "nan", "inf", "60.0 s", ""}) {
+    has(Refusal([time](onnx::ModelProto* m) {
+          for (auto& entry : *m->mutable_metadata_props()) {
+            if (entry.key() == "stg.noise_time_s") entry.set_value(time);
+          }
+        }),
+        "'stg.noise_time_s' is not a time");
+  }
   EXPECT_FALSE(EntityPolicy::IsOne((folder_ / "missing.onnx").string()));
 }
 
@@ -177,6 +187,11 @@ TEST(EntityPolicy, RefusesWhatIsNotFinite) {
   p = DrawnPolicy();
   p.log_std.pop_back();
   EXPECT_THROW(EntityPolicy{p}, UserError);
+  for (const double time : {-1.0, 10001.0, std::nan("")}) {
+    p = DrawnPolicy();
+    p.noise_time_s = time;
+    EXPECT_THROW(EntityPolicy{p}, UserError) << time;
+  }
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "auv_common/config/loader.hpp"
+#include "auv_common/config/value.hpp"
 #include "auv_common/error.hpp"
 #include "marl_trainer/learn/nn/blas.hpp"
 #include "marl_trainer/learn/options.hpp"
@@ -32,7 +33,7 @@ std::string TextOf(const SwarmConfig& config) {
   return json.dump();
 }
 
-/// Identifies the numbers of a policy.
+/// Identifies the numbers of a policy and its exploration.
 std::string NumbersHash(const agent::EntityPolicy& policy) {
   const agent::EntityPolicy::Parameters& p = policy.parameters();
   std::string bytes;
@@ -41,6 +42,7 @@ std::string NumbersHash(const agent::EntityPolicy& policy) {
     bytes.resize(begin + numbers->size() * sizeof(float));
     std::memcpy(bytes.data() + begin, numbers->data(), numbers->size() * sizeof(float));
   }
+  if (p.noise_time_s > 0.0) bytes += config::FormatNumber(p.noise_time_s);
   return config::HashOf(bytes).substr(0, 8);
 }
 
@@ -100,10 +102,6 @@ SwarmConfig RecordedSwarmConfig() {
   config.minibatch = 1500;
   config.epochs = 4;
   config.learning_rate = config.last_learning_rate = 2e-4;
-  // Agents explore with white noise.
-  config.last_command = true;
-  config.log_std = -1.0;
-  config.most_log_std = -0.5;
   return config;
 }
 
@@ -131,6 +129,7 @@ RecordedSwarmTrainer::RecordedSwarmTrainer(const Scenario& scenario, const Swarm
       } catch (const UserError& error) {
         throw UserError(start.path + ": does not fit: " + error.what());
       }
+      learner_.RequireBlind(start.path);
     }
     if (options.log_std) learner_.SetDeviation(*options.log_std);
   }

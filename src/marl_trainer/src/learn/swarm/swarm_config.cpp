@@ -52,7 +52,7 @@ void SwarmConfig::Describe(config::Table* t) {
          "log sigma of the exploration at the start, also after --start-from");
   t->Add("min-log-std", &least_log_std, {-20, 2}, "-", "lower bound of log sigma");
   t->Add("max-log-std", &most_log_std, {-20, 2}, "-", "upper bound of log sigma");
-  t->Add("noise-time", &noise_time_s, {0, 1e4}, "s",
+  t->Add("noise-time", &noise_time_s, {0, agent::EntityPolicy::kMaxNoiseTime_s}, "s",
          "correlation time of the exploration; 0: each command has noise of its own");
   t->Add("average", &average, {1, 1e6}, "-",
          "number of updates over which the parameters of the written policy are averaged");

@@ -20,6 +20,7 @@ agent::EntityPolicy SwarmLearner::PolicyOf(const std::vector<float>& numbers,
   agent::EntityPolicy::Parameters p;
   p.numbers.assign(numbers.begin(), numbers.end() - size_);
   p.log_std.assign(numbers.end() - size_, numbers.end());
+  p.noise_time_s = config_.noise_time_s;
   p.action = config_.action;
   p.network = config_.network;
   p.metadata = metadata;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 
 #include "auv_common/error.hpp"
 #include "auv_common/numbers/random.hpp"
@@ -62,13 +61,13 @@ SwarmShard::SwarmShard(const env::EnvFactory& make_env, const SwarmConfig& confi
   potential_.resize(rows);
   next_potential_.resize(rows);
   outcomes_.resize(static_cast<std::size_t>(env_.agents()));
-  noise_.resize(rows * agent::kCommandNumbers);
+  noise_.resize(rows);
   RestartAt(0);
 }
 
 void SwarmShard::RestartAt(std::uint64_t k) {
   env_.RestartAt(k, memory_.arrays());
-  fresh_ = true;
+  std::fill(noise_.begin(), noise_.end(), agent::CommandNoise());
 }
 
 Outcome SwarmShard::OutcomeOf(int e, int i) const {
@@ -110,14 +109,8 @@ void SwarmShard::Observe(const SwarmActor& actor, std::uint32_t collection, int 
     of.means = workspace_.means.data() + static_cast<std::ptrdiff_t>(first) * size;
     of.log_std = actor.log_std;
     of.size = size;
-    of.noise = noise_.data() + static_cast<std::ptrdiff_t>(row) * agent::kCommandNumbers;
-    if (config_.noise_time_s > 0.0) {
-      if (fresh_) {
-        for (int k = 0; k < size; ++k) of.noise[k] = static_cast<float>(random.Normal());
-      }
-      of.keep = static_cast<float>(
-          std::exp(-agent::CommandPeriod_s(env_.scenario().run) / config_.noise_time_s));
-    }
+    of.keep = agent::NoiseKept(env_.scenario().run, config_.noise_time_s);
+    of.noise = &noise_[static_cast<std::size_t>(row)];
     int choice = 0;
     float command[agent::kCommandNumbers];
     out->log_prob.push_back(agent::DrawCommand(of, &random, &choice, command));
@@ -126,7 +119,6 @@ void SwarmShard::Observe(const SwarmActor& actor, std::uint32_t collection, int 
     agent::TakeDecision(env_.agent(row / n, row % n), entities_[static_cast<std::size_t>(row)],
                         config_.action, of.chooses, choice, command);
   }
-  fresh_ = false;
 }
 
 void SwarmShard::FlyOn(int step, SwarmRollout* out) {

@@ -36,7 +36,8 @@ std::unique_ptr<OnlineLearner> MakeLayersLearner(const Scenario& scenario,
     throw UserError("parameter network: layers, but the start policy '" + start +
                     "' is a network over entities");
   }
-  for (const char* name : {"critic_updates", "log_std", "learning_rate", "last_learning_rate"}) {
+  for (const char* name : {"critic_updates", "log_std", "noise_time", "last_command",
+                           "learning_rate", "last_learning_rate"}) {
     RefuseParameter(name, "belongs to the networks pool and graph, but the network is layers");
   }
   RefuseTrainParameters(
@@ -75,7 +76,7 @@ std::unique_ptr<OnlineLearner> MakeEntityLearner(const Scenario& scenario,
   if (!network.empty()) config.network = agent::EntityNetworkNamed(network);
   RefuseTrainParameters(
       {"steps", "envs", "waters", "horizon", "segment", "episode-steps", "free-assignment",
-       "leaving", "noise-time", "average", "last-learning-rate", "last-entropy",
+       "leaving", "average", "last-learning-rate", "last-entropy",
        "validation-interval", "validation-episodes"},
       kOnlyInEnvironments);
   config::Table table;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -68,14 +69,18 @@ void ExpectNear(const std::vector<float>& a, const std::vector<float>& b, double
 // order differ in the last digits.
 TEST_F(SwarmRecording, ARecordedFlightGivesTheRolloutAndTheUpdateOfTheCollector) {
   constexpr double kTolerance = 2e-4;
-  for (const auto network : {agent::EntityNetwork::kPool, agent::EntityNetwork::kGraph}) {
+  using agent::EntityNetwork;
+  // The shard has the random numbers of the first episode, so it also draws the same noise.
+  for (const auto& [network, noise_time_s] :
+       {std::pair{EntityNetwork::kPool, 0.0}, std::pair{EntityNetwork::kPool, 60.0},
+        std::pair{EntityNetwork::kGraph, 0.0}, std::pair{EntityNetwork::kGraph, 60.0}}) {
     const bool free = network == agent::EntityNetwork::kGraph;
     scenario_ = Short(free ? "many8" : "field", free ? 4 : 3);
     config_.network = network;
     config_.horizon = kFlightCommands;
     config_.episode_steps = kFlightSteps;
-    config_.noise_time_s = 0.0;  // as agents explore
-    const std::string name = agent::EntityNetworkName(network);
+    config_.noise_time_s = noise_time_s;
+    const std::string name = agent::EntityNetworkName(network) + std::to_string(noise_time_s);
     const auto trainer = Trainer(name);
     SwarmLearner learner(config_);
     SwarmShard shard(env::EnvFactory(trainer->scenario()), config_, 0, 1, 1);
@@ -165,6 +170,18 @@ TEST_F(SwarmRecording, TrainingGoesOnFromItsFolder) {
   halves.reset();
   config_.network = agent::EntityNetwork::kGraph;
   EXPECT_THROW(Trainer("halves"), UserError);
+}
+
+// Agents that have a policy of this identity keep it.
+TEST_F(SwarmRecording, APolicyThatExploresDifferentlyHasAnotherIdentity) {
+  std::vector<std::string> ids;
+  for (const double noise_time_s : {0.0, 20.0, 60.0}) {
+    config_.noise_time_s = noise_time_s;
+    const auto trainer = Trainer("time" + std::to_string(noise_time_s));
+    EXPECT_EQ(trainer->policy().parameters().noise_time_s, noise_time_s);
+    EXPECT_EQ(std::count(ids.begin(), ids.end(), trainer->policy_id()), 0);
+    ids.push_back(trainer->policy_id());
+  }
 }
 
 TEST_F(SwarmRecording, StartsFromAPolicyAndTeachesItsCriticFirst) {

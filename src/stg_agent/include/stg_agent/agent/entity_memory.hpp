@@ -13,6 +13,14 @@ using dynamics::kMostTargets;
 /// Size of a command. Actions with fewer numbers use the first ones.
 inline constexpr int kCommandNumbers = 5;
 
+/// The noise of an AUV's exploration in its last command: for each number of the command an
+/// autoregression of order one with variance 1, which is an Ornstein-Uhlenbeck process at the times
+/// of the commands.
+struct CommandNoise {
+  bool begun = false;  ///< false: the next command draws a first value, of variance 1
+  std::array<float, kCommandNumbers> values{};
+};
+
 /// What the agent keeps between decisions for the entities, and the present command. A new episode
 /// clears it.
 struct EntityMemory {
@@ -29,6 +37,7 @@ struct EntityMemory {
   std::array<float, kCommandNumbers> command{};  ///< in [-1, 1]
   bool search = false;      ///< the command is to search, although the target is estimated
   Vec3<double> velocity_W;  ///< desired velocity of a command of `course3`, world axes [m/s]
+  CommandNoise noise;       ///< of the exploration; unused without one
 
   bool ranged(int target) const { return own_detection[static_cast<std::size_t>(target)] >= 0; }
 

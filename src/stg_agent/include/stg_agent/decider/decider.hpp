@@ -33,9 +33,9 @@ struct Decider {
   /// @param seed seed of the episode; the same seed gives the same samples in any episode
   float Explore(std::uint64_t seed, std::uint32_t step, int id, float* action) const;
 
-  /// The action of the policy over entities that explores. The draws are a function of (seed,
-  /// number of the command, id) only. Returns true if the AUV has a new command. Only with
-  /// `entities`.
+  /// The action of the policy over entities that explores. The random numbers are a function of
+  /// (seed, number of the command, id) only; correlated noise also depends on the AUV's noise
+  /// before. Returns true if the AUV has a new command. Only with `entities`.
   /// @param decision the new command, otherwise unchanged
   bool Explore(std::uint64_t seed, std::uint32_t step, const AgentView& agent,
                EntityDecision* decision, float* action) const;

@@ -22,11 +22,15 @@ struct CommandDistribution {
   const float* means = nullptr;    ///< [choices, size]
   const float* log_std = nullptr;  ///< [size]
   int size = kCommandNumbers;
-  /// Correlation of the noise with that of the last command, from 0 to 1; above 0 `noise` is read
-  /// and written: [size], of deviation 1. Each command alone has the density above.
+  /// Correlation of the noise with that of the last command (NoiseKept). Above 0 `noise` is read
+  /// and written. Each command alone has the density above.
   float keep = 0.0F;
-  float* noise = nullptr;
+  CommandNoise* noise = nullptr;
 };
+
+/// Correlation of the noises of two commands in a row: exp(-CommandPeriod_s(run) / noise_time_s).
+/// @param noise_time_s correlation time [s]; 0: independent noise, which gives 0
+float NoiseKept(const RunConfig& run, double noise_time_s);
 
 /// Draws a choice and a command. @param command [size], before any clipping
 /// Returns the natural log of their density.
@@ -45,7 +49,8 @@ struct EntityDecision {
 double LogDensity(const EntityPolicy& policy, const Entities& entities, int choice,
                   const float* command);
 
-/// As Fly, but a new command is drawn. Returns true if there is a new one. It allocates nothing.
+/// As Fly, but a new command is drawn. Its noise has the policy's correlation time and begins anew
+/// in each episode. Returns true if there is a new one. It allocates nothing.
 /// @param decision the new command, otherwise unchanged
 bool FlyExploring(const EntityPolicy& policy, const AgentView& agent, Random* random,
                   EntityDecision* decision, float* out);

@@ -55,9 +55,11 @@ class EntityPolicy {
     EntityAction action = EntityAction::kGuidance;
     EntityNetwork network = EntityNetwork::kPool;
     std::vector<float> log_std;  ///< [CommandSize], for exploration; not used by Command
+    double noise_time_s = 0.0;   ///< correlation time of the exploration; 0: independent commands
     PolicyMetadata metadata;     ///< layout and interface are set by the constructor
   };
   static constexpr std::int64_t kMaxFileBytes = 16LL << 20;
+  static constexpr double kMaxNoiseTime_s = 1e4;
 
   /// Throws UserError when shapes disagree or a number is not finite.
   explicit EntityPolicy(Parameters parameters);

@@ -69,8 +69,7 @@ class SwarmShard {
   env::EnvMemory memory_;
   std::vector<agent::Entities> entities_;  // [envs, agents]
   std::vector<float> actions_, sums_, potential_, next_potential_;
-  std::vector<float> noise_;  // [envs, agents, kCommandNumbers], of the exploration
-  bool fresh_ = true;         // the noise begins anew
+  std::vector<agent::CommandNoise> noise_;  // [envs, agents], of the exploration
   PackedRows now_, last_;
   ActorWorkspace workspace_;
   SwarmTruth truth_;
