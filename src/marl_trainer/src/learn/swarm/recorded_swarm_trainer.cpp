@@ -101,7 +101,7 @@ SwarmConfig RecordedSwarmConfig() {
   SwarmConfig config;
   config.minibatch = 1500;
   config.epochs = 4;
-  config.learning_rate = config.last_learning_rate = 2e-4;
+  config.last_learning_rate = config.learning_rate;
   return config;
 }
 

@@ -72,8 +72,8 @@ class RecordedSwarmTrainer {
   std::shared_ptr<const agent::EntityPolicy> policy_;
 };
 
-/// Defaults for updates on a few whole episodes: smaller minibatches and rates than `train_swarm`,
-/// and the rates stay the same.
+/// Defaults for updates on a few whole episodes: smaller minibatches than in `train_swarm`, and the
+/// learning rate stays the same.
 SwarmConfig RecordedSwarmConfig();
 
 }  // namespace stg::learn
