@@ -56,6 +56,17 @@ class LaunchFiles(unittest.TestCase):
                         f"no node {node.package}/{node.type}",
                     )
 
+    def test_the_trainer_gets_the_options_of_its_exploration(self):
+        def given(*words):
+            parameters = load(LAUNCH / "train_online.launch", ["out:=/nonexistent", *words]).params
+            return {name: parameters[f"/trainer/{name}"].value
+                    for name in ("noise_time", "last_command", "log_std") if f"/trainer/{name}" in parameters}
+
+        # The node chooses what is not given, because `layers` refuses all of them.
+        self.assertEqual(given("scenario:=field"), {})
+        self.assertEqual(given("noise_time:=20", "last_command:=true", "log_std:=-2"),
+                         {"noise_time": 20.0, "last_command": True, "log_std": -2.0})
+
     def test_a_run_from_a_clone_builds_all_that_it_starts(self):
         # `./stg run` builds the target stg_graph, or everything if the launch file starts a trainer.
         built = set()
