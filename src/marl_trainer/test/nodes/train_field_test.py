@@ -91,7 +91,7 @@ class TrainField(unittest.TestCase):
         for name in ("critic_updates", "log_std", "noise_time", "last_command"):
             text = self.refused("_network:=layers", f"_{name}:=1")
             self.assertIn(f"parameter {name}: belongs to the networks pool and graph", text)
-        for network, name in (("layers", "lr_final"), ("layers", "imitate"), (self.network, "average")):
+        for network, name in (("layers", "lr_final"), ("layers", "imitate"), (self.network, "leaving")):
             text = self.refused(f"_network:={network}", f"_{name}:=0.5")
             self.assertIn(f"parameter {name}: only a training in environments reads it", text)
         text = self.refused("_network:=layers", f"_start_policy:={self.policies / 'medium.onnx'}", "_activation:=tanh")

@@ -133,8 +133,7 @@ RecordedSwarmTrainer::RecordedSwarmTrainer(const Scenario& scenario, const Swarm
     }
     if (options.log_std) learner_.SetDeviation(*options.log_std);
   }
-  policy_ = std::make_shared<const agent::EntityPolicy>(MakePolicy());
-  policy_->SaveOnnx(policy_path());
+  WritePolicies();
 }
 
 void RecordedSwarmTrainer::Restore(const TrainState& state, const SwarmStart& start) {
@@ -165,8 +164,7 @@ RecordedTrainer::Progress RecordedSwarmTrainer::Update(const std::vector<SwarmEp
                       acts ? SwarmLearner::Learns::kBoth : SwarmLearner::Learns::kCritic);
   ++state_.collections;
   state_.env_steps += static_cast<std::int64_t>(episodes.size()) * scenario_.run.time.episode_steps;
-  policy_ = std::make_shared<const agent::EntityPolicy>(MakePolicy());
-  policy_->SaveOnnx(policy_path());
+  WritePolicies();
 
   RecordedTrainer::Progress p;
   p.seconds = watch.seconds();
@@ -187,14 +185,17 @@ RecordedTrainer::Progress RecordedSwarmTrainer::Update(const std::vector<SwarmEp
   return p;
 }
 
-agent::EntityPolicy RecordedSwarmTrainer::MakePolicy() const {
+void RecordedSwarmTrainer::WritePolicies() {
   agent::PolicyMetadata m;
-  m.id = scenario_.run.name + "-recorded-" + std::to_string(state_.env_steps);
   m.scenario_hash = ScenarioHash(scenario_);
   m.training_step = state_.env_steps;
   m.seed = config_.seed;
-  m.id += "-" + NumbersHash(learner_.Policy(m));
-  return learner_.Policy(m);
+  const std::string id = scenario_.run.name + "-recorded-" + std::to_string(state_.env_steps);
+  m.id = id + "-" + NumbersHash(learner_.Policy(m));
+  policy_ = std::make_shared<const agent::EntityPolicy>(learner_.Policy(m));
+  policy_->SaveOnnx(policy_path());
+  m.id = id + "-average-" + NumbersHash(learner_.AveragePolicy(m));
+  learner_.AveragePolicy(m).SaveOnnx(average_path());
 }
 
 }  // namespace stg::learn

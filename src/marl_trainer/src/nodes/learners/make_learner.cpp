@@ -74,11 +74,10 @@ std::unique_ptr<OnlineLearner> MakeEntityLearner(const Scenario& scenario,
   const agent::EntityNetwork network_of_start = config.network;
   const agent::EntityAction action_of_start = config.action;
   if (!network.empty()) config.network = agent::EntityNetworkNamed(network);
-  RefuseTrainParameters(
-      {"steps", "envs", "waters", "horizon", "segment", "episode-steps", "free-assignment",
-       "leaving", "average", "last-learning-rate", "last-entropy",
-       "validation-interval", "validation-episodes"},
-      kOnlyInEnvironments);
+  RefuseTrainParameters({"steps", "envs", "waters", "horizon", "segment", "episode-steps",
+                         "free-assignment", "leaving", "last-learning-rate", "last-entropy",
+                         "validation-interval", "validation-episodes"},
+                        kOnlyInEnvironments);
   config::Table table;
   config.Describe(&table);
   learn::RecordedSwarmTrainer::Options options;

@@ -184,6 +184,26 @@ TEST_F(SwarmRecording, APolicyThatExploresDifferentlyHasAnotherIdentity) {
   }
 }
 
+TEST_F(SwarmRecording, TheAverageIsTheMeanOverTheLastUpdates) {
+  config_.average = 2.0;
+  const auto trainer = Trainer("run");
+  std::vector<std::vector<float>> numbers;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    trainer->Update({FlySwarm(trainer->scenario(), trainer->policy(), seed)});
+    numbers.push_back(trainer->policy().parameters().numbers);
+  }
+  // Of two updates each weighs a half; the older ones fade by a half with each update.
+  std::vector<float> expected(numbers[0].size());
+  for (std::size_t k = 0; k < expected.size(); ++k) {
+    expected[k] = 0.25F * numbers[0][k] + 0.25F * numbers[1][k] + 0.5F * numbers[2][k];
+  }
+  const agent::EntityPolicy average = agent::EntityPolicy::LoadOnnx(trainer->average_path());
+  ExpectNear(average.parameters().numbers, expected, 1e-6, "average ");
+  EXPECT_NE(average.parameters().numbers, numbers[2]);
+  EXPECT_NE(average.metadata().id, trainer->policy_id());
+  EXPECT_EQ(average.parameters().noise_time_s, config_.noise_time_s);
+}
+
 TEST_F(SwarmRecording, StartsFromAPolicyAndTeachesItsCriticFirst) {
   config_.network = agent::EntityNetwork::kGraph;
   const auto trained = Trainer("trained");

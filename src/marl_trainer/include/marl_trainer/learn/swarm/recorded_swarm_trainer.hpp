@@ -28,7 +28,8 @@ bool HoldsSwarmCheckpoint(const std::string& folder);
 SwarmStart ReadSwarmStart(const std::string& path, SwarmConfig* config);
 
 /// Trains a network over entities on recorded episodes with SwarmLearner, the learner of
-/// SwarmTrainer. Each update makes a new policy with its own id. The rest is as in RecordedTrainer.
+/// SwarmTrainer. Each update makes a new policy with its own id, and its mean over the last
+/// updates. The rest is as in RecordedTrainer.
 class RecordedSwarmTrainer {
  public:
   struct Options {
@@ -53,14 +54,17 @@ class RecordedSwarmTrainer {
   const Scenario& scenario() const { return scenario_; }
   const agent::EntityPolicy& policy() const { return *policy_; }
   const std::string& policy_id() const { return policy_->metadata().id; }
+  /// The file of the policy, with which agents explore.
   std::string policy_path() const { return folder_.PolicyPath("policy_last"); }
+  /// The file of its mean over the last updates (SwarmConfig::average), to fly with.
+  std::string average_path() const { return folder_.PolicyPath("policy_average"); }
   std::int64_t updates() const { return state_.collections; }
   std::int64_t env_steps() const { return state_.env_steps; }
   const SwarmLearner& learner() const { return learner_; }
 
  private:
   void Restore(const TrainState& state, const SwarmStart& start);
-  agent::EntityPolicy MakePolicy() const;
+  void WritePolicies();
 
   const Scenario scenario_;
   const SwarmConfig config_;
