@@ -31,7 +31,8 @@ float Decider::Explore(std::uint64_t seed, std::uint32_t step, int id, float* ac
 
 bool Decider::Explore(std::uint64_t seed, std::uint32_t step, const AgentView& agent,
                       EntityDecision* decision, float* action) const {
-  const auto decisions = static_cast<std::uint32_t>(DecisionsPerCommand(agent.model().run));
+  const auto decisions =
+      static_cast<std::uint32_t>(DecisionsPerCommand(agent.model().run, entities->action()));
   Random random(seed, Stream::kPolicy, 0, step / decisions, static_cast<std::uint32_t>(agent.id()));
   return FlyExploring(*entities, agent, &random, decision, action);
 }
@@ -69,6 +70,7 @@ Decider ReadDecider(const std::string& name, int first, int end) {
 Decider MakeDecider(const std::string& name, const AgentModel& model) {
   Decider decider = ReadDecider(name, 0, model.run.agents);
   for (const auto& policy : decider.policies) policy->RequireFits(model);
+  if (decider.entities != nullptr) decider.entities->RequireFits(model);
   return decider;
 }
 

@@ -1,4 +1,3 @@
-// Long because: all numbers of the layout are written here, in the order of the rows.
 #include "stg_agent/entities/entities.hpp"
 
 #include <algorithm>
@@ -8,56 +7,28 @@
 
 #include "acoustic_channel/access/medium_access.hpp"
 #include "auv_common/numbers/attitude.hpp"
+#include "rows/obstacle_rows.hpp"
 #include "stg_agent/graph/features.hpp"
 
 namespace stg::agent {
 namespace {
 
-constexpr double kSpeedScale = 2.3, kCourseFrom = 0.3, kGeometryAge = 60.0, kObstacleRange = 500.0;
-constexpr double kDrift = 0.3;  // growth of a neighbour's deviation [m/s]
+constexpr double kCourseFrom = 0.3, kGeometryAge = 60.0;
+constexpr double kDrift = 0.3;  // growth of a neighbour's deviation [m/s, in the field]
 
-/// Writes numbers one after another, each clipped.
-class Row {
- public:
-  explicit Row(float* out) : out_(out) {}
-  Row& Put(double value) {
-    const auto x = static_cast<float>(value);
-    *out_++ = std::min(std::max(x, -kEntityClip), kEntityClip);
-    return *this;
-  }
-  const float* end() const { return out_; }
-
- private:
-  float* out_;
-};
-
-/// The horizontal frame K.
-struct Frame {
-  double c = 1.0, s = 0.0;  // course
-
-  double x(const Vec3<double>& v) const { return c * v.x + s * v.y; }
-  double y(const Vec3<double>& v) const { return c * v.y - s * v.x; }
-};
-
-Frame FrameOf(const Knowledge<double>& k) {
+/// Between walls, AUVs fly in any direction, so x is along the heading.
+Frame FrameOf(const Knowledge<double>& k, const EntityScales& u) {
   const double speed = std::hypot(k.v_WB.x, k.v_WB.y);
-  if (speed >= kCourseFrom) return {k.v_WB.x / speed, k.v_WB.y / speed};
+  if (!u.walls && speed >= kCourseFrom) return {k.v_WB.x / speed, k.v_WB.y / speed};
   return {k.trig.cos_psi, k.trig.sin_psi};
 }
 
-/// cos and sin of the bearing of a horizontal vector in K; straight ahead if the vector is zero.
-void PutBearing(const Frame& K, const Vec3<double>& r, Row* row) {
-  const double d = std::hypot(r.x, r.y);
-  if (d < 1e-6) {
-    row->Put(1.0).Put(0.0);
-  } else {
-    row->Put(K.x(r) / d).Put(K.y(r) / d);
-  }
-}
-
-double ClosestApproach(const Vec3<double>& r, const Vec3<double>& w, double* miss) {
+double ClosestApproach(const Vec3<double>& r, const Vec3<double>& w, const EntityScales& u,
+                       double* miss) {
   const double square = w.x * w.x + w.y * w.y + w.z * w.z;
-  const double t = square < 1e-8 ? 0.0 : std::clamp(-Dot(r, w) / square, 0.0, 300.0);
+  const double t = square < 1e-8 * u.speed * u.speed
+                       ? 0.0
+                       : std::clamp(-Dot(r, w) / square, 0.0, 300.0 * u.time);
   *miss = Norm(r + w * t);
   return t;
 }
@@ -83,19 +54,23 @@ bool Sighted(const EntityInput& in, const Subject& t, const NeighbourState& repo
   return false;
 }
 
-void PutSelf(const EntityInput& in, const Frame& K, float* out) {
+void PutSelf(const EntityInput& in, const EntityScales& u, const Frame& K, float* out) {
   const Knowledge<double>& k = in.knowledge;
   const AgentModel& m = in.model;
   const double now = Seconds(in.memory.now);
   Row row(out);
-  row.Put(k.v_WB_B.x / kSpeedScale).Put(std::hypot(k.v_WB.x, k.v_WB.y) / kSpeedScale);
+  row.Put(u.Speed(k.v_WB_B.x)).Put(u.Speed(std::hypot(k.v_WB.x, k.v_WB.y)));
   row.Put(K.s * k.trig.cos_psi - K.c * k.trig.sin_psi);  // sin(course - heading)
   row.Put(K.c * k.trig.cos_psi + K.s * k.trig.sin_psi);
-  row.Put(k.w_WB_B.z / 0.0873).Put(k.v_WB.z / 0.5);
+  row.Put(k.w_WB_B.z * u.time / 0.0873).Put(k.v_WB.z / (0.5 * u.speed));
   const config::Interval& depth = m.sea.auv_depth_m;
-  row.Put((-k.p_WB.z - depth.lo) / std::max(depth.hi - depth.lo, 1.0));
-  row.Put(std::clamp((m.sea.bottom_m + k.p_WB.z - 10.0) / 20.0, -1.0, 1.0));
-  row.Put(DeviationScale(in.memory.position_std_m));
+  if (u.walls) {
+    row.Put(0.0).Put(0.0);  // there is neither a range of depths nor a bottom
+  } else {
+    row.Put((-k.p_WB.z - depth.lo) / std::max(depth.hi - depth.lo, 1.0));
+    row.Put(std::clamp((m.sea.bottom_m + k.p_WB.z - 10.0) / 20.0, -1.0, 1.0));
+  }
+  row.Put(u.Deviation(in.memory.position_std_m));
   for (const float c : in.memory.command) row.Put(static_cast<double>(c));
   double graph[kGraphNumbers];
   GraphSummary(m.observation, k, &graph);
@@ -107,7 +82,7 @@ void PutSelf(const EntityInput& in, const Frame& K, float* out) {
   const double slot = acoustics::SlotOfKeys(m.channel), frame = slot * m.run.agents;
   const bool turns = frame > 0.0;
   const double since = turns ? std::fmod(now - slot * in.id + frame * 4096.0, frame) : 0.0;
-  row.Put(turns ? AgeScale(since) : 0.0F).Put(turns ? 1.0 - since / frame : 0.0);
+  row.Put(turns ? u.Age(since) : 0.0F).Put(turns ? 1.0 - since / frame : 0.0);
   int silent = 0;
   for (int j = 0; j < in.neighbour_count; ++j) {
     if (turns && in.neighbours[j].sight.age_s > 3.0 * frame) ++silent;
@@ -118,25 +93,26 @@ void PutSelf(const EntityInput& in, const Frame& K, float* out) {
 
 /// |mean e^{i theta}| and |mean e^{2 i theta}| of the bearings from the target to AUVs that
 /// measured it in the last minute. Both are 1, as for one observer, if there was no measurement.
-void Geometry(const EntityInput& in, const Subject& t, double* once, double* twice) {
+void Geometry(const EntityInput& in, const EntityScales& u, const Subject& t, double* once,
+              double* twice) {
   const Vec3<double>& r = t.knowledge.r_BT_W;
   std::complex<double> first, second;
   int count = 0;
   const auto add = [&](double x, double y) {
     const double d = std::hypot(x, y);
-    if (d < 1e-6) return;
+    if (d < 1e-6 * u.length) return;
     const std::complex<double> e(x / d, y / d);
     first += e;
     second += e * e;
     ++count;
   };
   const TimeNs own = in.memory.own_detection[static_cast<std::size_t>(t.target)];
-  if (own >= 0 && Seconds(in.memory.now - own) <= kGeometryAge) {
+  if (own >= 0 && Seconds(in.memory.now - own) <= kGeometryAge * u.time) {
     add(-r.x, -r.y);
   }
   for (int j = 0; j < in.neighbour_count; ++j) {
     double age = 0.0;
-    if (!Sighted(in, t, *in.neighbours[j].report, &age) || age > kGeometryAge) continue;
+    if (!Sighted(in, t, *in.neighbours[j].report, &age) || age > kGeometryAge * u.time) continue;
     const Vec3<double>& n = in.neighbours[j].sight.r_BN_W;
     add(n.x - r.x, n.y - r.y);
   }
@@ -144,7 +120,8 @@ void Geometry(const EntityInput& in, const Subject& t, double* once, double* twi
   *twice = count > 0 ? std::abs(second) / count : 1.0;
 }
 
-void PutTarget(const EntityInput& in, const Subject& t, const Frame& K, float* out) {
+void PutTarget(const EntityInput& in, const EntityScales& u, const Subject& t, const Frame& K,
+               float* out) {
   const Knowledge<double>& k = t.knowledge;
   const ObservationConfig& c = in.model.observation;
   const double desired = in.model.task.desired_distance_m;
@@ -152,64 +129,83 @@ void PutTarget(const EntityInput& in, const Subject& t, const Frame& K, float* o
   const double level = std::max(std::hypot(r.x, r.y), 1e-6);
   Row row(out);
   PutBearing(K, r, &row);
-  row.Put(FarScale(k.distance)).Put(BandScale(k.distance, desired));
-  row.Put(MiddleScale(k.distance, desired));
-  row.Put(r.z / 40.0);
+  row.Put(u.Far(k.distance));
+  row.Put(u.Band(k.distance, desired));
+  row.Put(u.Middle(k.distance, desired));
+  row.Put(r.z / (40.0 * u.length));
   const double lx = r.x / level, ly = r.y / level;  // the line of sight
-  const auto along = [&](const Vec3<double>& v) { return (v.x * lx + v.y * ly) / kSpeedScale; };
-  const auto across = [&](const Vec3<double>& v) { return (v.y * lx - v.x * ly) / kSpeedScale; };
+  // Between walls AUVs are anywhere on a sphere around the target. Directly above it there is no
+  // horizontal line of sight, so velocities are along the axes of K.
+  const double ax = u.walls ? K.c : lx, ay = u.walls ? K.s : ly;
+  const auto along = [&](const Vec3<double>& v) { return u.Speed(v.x * ax + v.y * ay); };
+  const auto across = [&](const Vec3<double>& v) { return u.Speed(v.y * ax - v.x * ay); };
   row.Put(along(k.v_WT)).Put(across(k.v_WT)).Put(along(k.v_WB)).Put(across(k.v_WB));
-  row.Put((across(k.v_WT) - across(k.v_WB)) * kSpeedScale / std::max(level, 1.0) * 60.0);
+  const double mps = EntityScales::kFieldSpeed_mps * u.speed;
+  const auto turning = [&](const Vec3<double>& v) { return u.Speed(v.y * lx - v.x * ly); };
+  row.Put((turning(k.v_WT) - turning(k.v_WB)) * mps / std::max(level, u.length) * 60.0 * u.time);
   const Covariance3& P = t.belief.P_WT;
   const double mean = 0.5 * (P.xx + P.yy), half = 0.5 * (P.xx - P.yy);
   const double radius = std::hypot(half, P.xy);
   const double s1 = std::sqrt(std::max(mean + radius, 0.0));
   const double s2 = std::sqrt(std::max(mean - radius, 0.0));
-  row.Put(DeviationScale(s1)).Put(DeviationScale(s2));
+  row.Put(u.Deviation(s1)).Put(u.Deviation(s2));
   // Cosine and sine of twice the angle between the long axis and the line of sight.
   const double cos2 = radius > 1e-12 ? half / radius : 1.0;
   const double sin2 = radius > 1e-12 ? P.xy / radius : 0.0;
   const double c2 = lx * lx - ly * ly, s2l = 2.0 * lx * ly;
   const double a = (s1 - s2) / std::max(s1 + s2, 1e-9);
   row.Put(a * (cos2 * c2 + sin2 * s2l)).Put(a * (sin2 * c2 - cos2 * s2l));
-  row.Put(DeviationScale(std::sqrt(std::max(P.zz, 0.0)))).Put(t.velocity_std_mps / 0.9);
-  for (int n = 0; n < 4; ++n) row.Put(0.0);
-  row.Put(AgeScale(t.information_age_s));
+  row.Put(u.Deviation(std::sqrt(std::max(P.zz, 0.0))));
+  row.Put(t.velocity_std_mps / (0.9 * u.speed));
+  if (u.walls) {
+    row.Put(K.x(r) / (40.0 * u.length)).Put(K.y(r) / (40.0 * u.length));
+    row.Put(r.z / std::max(Norm(r), 1e-9)).Put(u.Speed(k.v_WT.z));
+  } else {
+    for (int n = 0; n < 4; ++n) row.Put(0.0);
+  }
+  row.Put(u.Age(t.information_age_s));
   const TimeNs own = in.memory.own_detection[static_cast<std::size_t>(t.target)];
-  row.Put(own >= 0 ? AgeScale(Seconds(in.memory.now - own)) : 1.0F);
+  row.Put(own >= 0 ? u.Age(Seconds(in.memory.now - own)) : 1.0F);
   row.Put(0.0);
   double once = 1.0, twice = 1.0;
-  Geometry(in, t, &once, &twice);
+  Geometry(in, u, t, &once, &twice);
   row.Put(once).Put(twice);
-  row.Put(k.confidence).Put(ShownProgress(c, k)).Put(std::log(1.0 + k.mean_error / 30.0) / 4.0);
-  row.Put(k.lost).Put(AgeScale(k.lost_steps * in.model.run.decision_dt_s()));
+  row.Put(k.confidence)
+      .Put(ShownProgress(c, k))
+      .Put(std::log(1.0 + k.mean_error / (30.0 * u.length)) / 4.0);
+  row.Put(k.lost).Put(u.Age(k.lost_steps * in.model.run.decision_dt_s()));
   double phase[kPhases], quality[kQualities];
   PhaseOneHot(c, k.lost, k.distance, ShownProgress(c, k), &phase);
   // The quality contains the certainty, too, not only the distance.
-  QualityOneHot(c, std::min(k.confidence, std::max(0.0, 1.0 - s1 / 100.0)), &quality);
+  QualityOneHot(c, std::min(k.confidence, std::max(0.0, 1.0 - s1 / (100.0 * u.length))), &quality);
   for (const double p : phase) row.Put(p);
   for (const double q : quality) row.Put(q);
   row.Put(t.followed ? 1.0 : 0.0);
 }
 
-void PutNeighbour(const EntityInput& in, const Frame& K, const EntityNeighbour& n, float* out) {
+void PutNeighbour(const EntityInput& in, const EntityScales& u, const Frame& K,
+                  const EntityNeighbour& n, float* out) {
   const NeighbourSight<double>& s = n.sight;
   const Vec3<double> w = s.v_W - in.knowledge.v_WB;
   Row row(out);
   PutBearing(K, s.r_BN_W, &row);
-  row.Put(FarScale(s.distance_m)).Put((s.distance_m - 20.0) / 20.0).Put(s.r_BN_W.z / 20.0);
-  row.Put(K.x(w) / kSpeedScale).Put(K.y(w) / kSpeedScale);
+  row.Put(u.Far(s.distance_m)).Put((s.distance_m - u.apart_m) / u.apart_m);
+  row.Put(s.r_BN_W.z / u.apart_m);
+  row.Put(u.Speed(K.x(w))).Put(u.Speed(K.y(w)));
   double miss = 0.0;
-  row.Put(AgeScale(ClosestApproach(s.r_BN_W, w, &miss)));
-  row.Put(miss / 40.0).Put(AgeScale(s.age_s));
-  row.Put(DeviationScale(n.report->position_std_m)).Put(DeviationScale(kDrift * s.age_s));
-  row.Put(s.link_quality).Put(0.0).Put(0.0);
+  row.Put(u.Age(ClosestApproach(s.r_BN_W, w, u, &miss)));
+  row.Put(miss / (2.0 * u.apart_m)).Put(u.Age(s.age_s));
+  row.Put(u.Deviation(n.report->position_std_m));
+  row.Put(u.Deviation(kDrift * u.speed * s.age_s));
+  row.Put(s.link_quality);
+  row.Put(u.walls ? K.x(s.r_BN_W) / u.apart_m : 0.0).Put(u.walls ? K.y(s.r_BN_W) / u.apart_m : 0.0);
   for (int p = 0; p < kPhases; ++p) row.Put(n.report->phase == p ? 1.0 : 0.0);
-  row.Put(n.report->confidence).Put(std::log(1.0 + s.tracking_error / 30.0) / 4.0);
+  row.Put(n.report->confidence).Put(std::log(1.0 + s.tracking_error / (30.0 * u.length)) / 4.0);
   row.Put(std::clamp(s.tracking_error / in.model.observation.error_scale_m, 0.0, 1.0));
 }
 
-void PutEdge(const EntityInput& in, const Subject& t, const EntityNeighbour& n, float* out) {
+void PutEdge(const EntityInput& in, const EntityScales& u, const Subject& t,
+             const EntityNeighbour& n, float* out) {
   const Vec3<double>& r = t.knowledge.r_BT_W;
   const Vec3<double>& s = n.sight.r_BN_W;
   const Vec3<double> q = s - r;  // position of the neighbour relative to the target
@@ -217,15 +213,16 @@ void PutEdge(const EntityInput& in, const Subject& t, const EntityNeighbour& n, 
   const double level = std::hypot(q.x, q.y), own = std::hypot(r.x, r.y);
   const double both = std::max(level * own, 1e-9);
   Row row(out);
-  row.Put(FarScale(d)).Put(BandScale(d, in.model.task.desired_distance_m));
+  row.Put(u.Far(d));
+  row.Put(u.Band(d, in.model.task.desired_distance_m));
   row.Put(-(q.x * r.x + q.y * r.y) / both).Put((q.x * r.y - q.y * r.x) / both);
   const int followed = in.model.task.free() ? n.report->followed : n.report->target;
   row.Put(followed == t.target ? 1.0 : 0.0);
   double age = 0.0;
-  row.Put(Sighted(in, t, *n.report, &age) ? AgeScale(age) : 1.0F);
+  row.Put(Sighted(in, t, *n.report, &age) ? u.Age(age) : 1.0F);
   row.Put(0.0);
   const double share = Dot(s, r) / std::max(Dot(r, r), 1e-9);
-  const bool between = share > 0.0 && share < 1.0 && Norm(s - r * share) < 20.0;
+  const bool between = share > 0.0 && share < 1.0 && Norm(s - r * share) < u.apart_m;
   row.Put(between ? 1.0 : 0.0);
 }
 
@@ -247,63 +244,12 @@ Knowledge<double> Regarding(const EntityInput& in, const EntityBelief& b) {
   return k;
 }
 
-/// One obstacle of the chart, relative to the AUV.
-struct Seen {
-  int kind;  // 0 sphere, 1 upright
-  Vec3<double> r;
-  double clearance, radius;
-};
-
-int SeeObstacles(const EntityInput& in, Seen* seen) {
-  int count = 0;
-  const auto offer = [&](const Seen& s) {
-    if (s.clearance > kObstacleRange) return;
-    int rank = count;
-    while (rank > 0 && s.clearance < seen[rank - 1].clearance) --rank;
-    if (rank >= kObstacleRows) return;
-    if (count < kObstacleRows) ++count;
-    for (int k = count - 1; k > rank; --k) seen[k] = seen[k - 1];
-    seen[rank] = s;
-  };
-  const Vec3<double>& p = in.knowledge.p_WB;
-  for (const auto& b : in.model.sea.spheres) {
-    const Vec3<double> r{b[0] - p.x, b[1] - p.y, b[2] - p.z};
-    offer({0, r, Norm(r) - b[3], b[3]});
-  }
-  for (const auto& b : in.model.sea.cylinders) {
-    const double z = std::clamp(p.z, b[2], b[2] + b[4]);
-    const Vec3<double> r{b[0] - p.x, b[1] - p.y, z - p.z};
-    offer({1, r, std::hypot(std::max(std::hypot(r.x, r.y) - b[3], 0.0), r.z), b[3]});
-  }
-  return count;
-}
-
-void PutObstacle(const EntityInput& in, const Frame& K, const Seen& o, float* out) {
-  const double d = std::max(Norm(o.r), 1e-6);
-  Row row(out);
-  row.Put(o.kind == 0 ? 1.0 : 0.0).Put(o.kind == 1 ? 1.0 : 0.0).Put(0.0);
-  PutBearing(K, o.r, &row);
-  row.Put(FarScale(std::max(o.clearance, 0.0))).Put((o.clearance - 25.0) / 25.0);
-  row.Put(Dot(in.knowledge.v_WB, o.r) / d / kSpeedScale).Put(FarScale(o.radius)).Put(o.r.z / 20.0);
-}
-
 }  // namespace
 
-float FarScale(double d) { return static_cast<float>(std::log(1.0 + d / 30.0) / 4.215); }
-float MiddleScale(double d, double desired) {
-  return static_cast<float>(std::tanh((d - desired) / 200.0));
-}
-float BandScale(double d, double desired) {
-  return static_cast<float>(std::clamp((d - desired) / 30.0, -3.0, 3.0));
-}
-float AgeScale(double t) {
-  return static_cast<float>(std::log(1.0 + std::max(t, 0.0) / 5.0) / 4.11);
-}
-float DeviationScale(double s) { return static_cast<float>(std::log(1.0 + s / 5.0) / 5.30); }
-
 void BuildEntities(const EntityInput& in, Entities* out) {
-  const Frame K = FrameOf(in.knowledge);
-  PutSelf(in, K, out->self);
+  const EntityScales u(in.model);
+  const Frame K = FrameOf(in.knowledge, u);
+  PutSelf(in, u, K, out->self);
   if (in.search != nullptr) {
     BuildSearchRow(*in.search, in.knowledge.p_WB, K.c, K.s, in.model.sensing.range_m, out->search);
   } else {
@@ -314,8 +260,9 @@ void BuildEntities(const EntityInput& in, Entities* out) {
   const auto put = [&](const Subject& t) {
     const int row = out->targets++;
     out->target_of_row[row] = t.target;
-    PutTarget(in, t, K, out->target[row]);
-    for (int j = 0; j < out->neighbours; ++j) PutEdge(in, t, in.neighbours[j], out->edge[row][j]);
+    PutTarget(in, u, t, K, out->target[row]);
+    for (int j = 0; j < out->neighbours; ++j)
+      PutEdge(in, u, t, in.neighbours[j], out->edge[row][j]);
   };
   if (in.belief.started) {
     put({in.target, in.knowledge, in.belief, in.velocity_std_mps, in.information_age_s, true});
@@ -325,10 +272,8 @@ void BuildEntities(const EntityInput& in, Entities* out) {
     put({b.target, Regarding(in, b), b.belief, b.velocity_std_mps, b.information_age_s, false});
   }
   for (int j = 0; j < out->neighbours; ++j)
-    PutNeighbour(in, K, in.neighbours[j], out->neighbour[j]);
-  Seen seen[kObstacleRows];
-  out->obstacles = SeeObstacles(in, seen);
-  for (int o = 0; o < out->obstacles; ++o) PutObstacle(in, K, seen[o], out->obstacle[o]);
+    PutNeighbour(in, u, K, in.neighbours[j], out->neighbour[j]);
+  out->obstacles = BuildObstacleRows(in, u, K, out->obstacle);
 }
 
 void BuildEntities(const AgentView& agent, Entities* out) {

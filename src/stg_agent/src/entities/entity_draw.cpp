@@ -68,7 +68,7 @@ double LogDensity(const EntityPolicy& policy, const Entities& entities, int choi
 
 bool FlyExploring(const EntityPolicy& policy, const AgentView& agent, Random* random,
                   EntityDecision* decision, float* out) {
-  const bool due = CommandDue(agent.memory());
+  const bool due = CommandDue(agent.memory(), policy.action());
   if (due) {
     BuildEntities(agent, &decision->entities);
     float logits[kMostChoices], means[kMostChoices * kCommandNumbers];

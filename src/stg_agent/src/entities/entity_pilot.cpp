@@ -15,6 +15,10 @@ constexpr double kRadius_m = 60.0, kDoubts = 3.0, kWidest_m = 800.0;
 constexpr double kSpeed_mps = 0.8, kPhase_rad = kPi / 3.0, kDepth_m = 15.0;
 constexpr double kTurn_rad = kPi / 3.0;
 constexpr float kClockwiseFrom = -0.8F;
+// Share of the largest velocity that a command of `velocity3` reaches: that of `medium`.
+constexpr double kShare = 0.75;
+// A command is the tanh of a network's output, which does not reach 1.
+constexpr double kMostTaught = 0.98;
 
 /// Acts by Encircle with the neighbours that built-in laws use. In a current the AUV flies fast
 /// enough to stay on its circle (chosen on seeds from 901,000).
@@ -65,6 +69,20 @@ Vec3<double> VelocityOf(const AgentView& agent, const float* command) {
   return {speed * std::cos(to), speed * std::sin(to), climb};
 }
 
+/// Velocity of a command of `velocity3` in world axes, as a share of the largest velocity. The
+/// command is ahead, to port and up, because the limits belong to the axes of the vehicle.
+void HeadingVelocity(const AgentView& agent, const float* command, double* velocity) {
+  const auto& most = agent.model().vehicle.max_velocity_mps;
+  const EulerTrig<double>& trig = agent.knowledge().trig;
+  const double ahead = kShare * most[0] * static_cast<double>(command[0]);
+  const double aport = kShare * most[1] * static_cast<double>(command[1]);
+  const double x = trig.cos_psi * ahead - trig.sin_psi * aport;
+  const double y = trig.sin_psi * ahead + trig.cos_psi * aport;
+  velocity[0] = std::clamp(x / most[0], -1.0, 1.0);
+  velocity[1] = std::clamp(y / most[1], -1.0, 1.0);
+  velocity[2] = kShare * static_cast<double>(command[2]);
+}
+
 }  // namespace
 
 Guidance<double> GuidanceOf(const float* command, double doubt_m) {
@@ -87,8 +105,17 @@ double CommandPeriod_s(const RunConfig& run) {
   return DecisionsPerCommand(run) * run.decision_dt_s();
 }
 
-bool CommandDue(const EntityMemory& memory) {
-  return !memory.commanded || Seconds(memory.now - memory.command_time) >= kCommandPeriod_s - 1e-6;
+int DecisionsPerCommand(const RunConfig& run, EntityAction action) {
+  return action == EntityAction::kVelocity3 ? 1 : DecisionsPerCommand(run);
+}
+
+double CommandPeriod_s(const RunConfig& run, EntityAction action) {
+  return DecisionsPerCommand(run, action) * run.decision_dt_s();
+}
+
+bool CommandDue(const EntityMemory& memory, EntityAction action) {
+  return !memory.commanded || action == EntityAction::kVelocity3 ||
+         Seconds(memory.now - memory.command_time) >= kCommandPeriod_s - 1e-6;
 }
 
 void TakeCommand(const AgentView& agent, EntityAction action, const float* command) {
@@ -121,11 +148,28 @@ void TakeDecision(const AgentView& agent, const Entities& entities, EntityAction
   }
 }
 
+void VelocityCommandOf(const AgentView& agent, const double* velocity, float* command) {
+  const auto& most = agent.model().vehicle.max_velocity_mps;
+  const EulerTrig<double>& trig = agent.knowledge().trig;
+  const double x = velocity[0] * most[0], y = velocity[1] * most[1];
+  const double wanted[3] = {(trig.cos_psi * x + trig.sin_psi * y) / (kShare * most[0]),
+                            (trig.cos_psi * y - trig.sin_psi * x) / (kShare * most[1]),
+                            velocity[2] / kShare};
+  for (int a = 0; a < 3; ++a) {
+    command[a] = static_cast<float>(std::clamp(wanted[a], -kMostTaught, kMostTaught));
+  }
+}
+
 void FollowCommand(const AgentView& agent, EntityAction action, float* out) {
   const AgentModel& model = agent.model();
   const EntityMemory& memory = agent.memory();
   double wanted[dynamics::kMaxActionSize];
-  if (action != EntityAction::kCourse3) {
+  if (action == EntityAction::kVelocity3) {
+    double velocity[3];
+    HeadingVelocity(agent, memory.command.data(), velocity);
+    AskForVelocity(ControllerInput<double>{model, agent.id(), agent.knowledge(), nullptr, 0},
+                   velocity, wanted);
+  } else if (action != EntityAction::kCourse3) {
     const Guidance<double> guidance = GuidanceOf(memory.command.data(), LevelDeviation(agent));
     (action == EntityAction::kLaw5 ? SteerLaw : Steer)(agent, guidance, wanted);
   } else {
@@ -141,7 +185,7 @@ void FollowCommand(const AgentView& agent, EntityAction action, float* out) {
 }
 
 void Fly(const EntityPolicy& policy, const AgentView& agent, float* out) {
-  if (CommandDue(agent.memory())) {
+  if (CommandDue(agent.memory(), policy.action())) {
     Entities entities;
     BuildEntities(agent, &entities);
     float command[kCommandNumbers];

@@ -21,7 +21,7 @@ std::size_t PlaceOf(const std::string& name, const std::vector<std::string>& nam
 }  // namespace
 
 const std::vector<std::string>& EntityActionNames() {
-  static const std::vector<std::string> names = {"guidance", "law5", "course3"};
+  static const std::vector<std::string> names = {"guidance", "law5", "course3", "velocity3"};
   return names;
 }
 
@@ -31,6 +31,14 @@ std::string EntityActionName(EntityAction action) {
 
 EntityAction EntityActionNamed(const std::string& name) {
   return static_cast<EntityAction>(PlaceOf(name, EntityActionNames(), "action"));
+}
+
+void RequireFits(EntityAction action, const AgentModel& model) {
+  const bool walls = std::isfinite(model.wall_m());
+  if (walls == (action == EntityAction::kVelocity3)) return;
+  throw UserError("the action '" + EntityActionName(action) + "' is for scenarios " +
+                  (walls ? "in open water, and '" : "between walls, and '") + model.run.name +
+                  (walls ? "' has walls" : "' is in open water"));
 }
 
 const std::vector<std::string>& EntityNetworkNames() {
@@ -117,6 +125,14 @@ EntityPolicy::EntityPolicy(Parameters parameters)
   parameters_.metadata.observation_layout = kEntityLayout;
   parameters_.metadata.action_interface = EntityActionName(parameters_.action);
   parameters_.metadata.action_scale = 1.0;
+}
+
+void EntityPolicy::RequireFits(const AgentModel& model) const {
+  try {
+    agent::RequireFits(parameters_.action, model);
+  } catch (const UserError& error) {
+    throw UserError("policy '" + metadata().id + "': " + error.what());
+  }
 }
 
 int EntityPolicy::Choices(const Entities& entities, float* logits, float* commands) const {

@@ -67,6 +67,7 @@ agent::Decider DeciderFor(const std::string& name, const agent::AgentModel& mode
   // Answers and logs repeat the name.
   if (!IsText(name)) throw UserError("policy: must be UTF-8 without control characters");
   agent::Decider decider = agent::ReadDecider(Resolve(name, model, id), id, id + 1);
+  if (decider.entities != nullptr) decider.entities->RequireFits(model);
   for (const auto& policy : decider.policies) {
     try {
       policy->RequireFits(model);

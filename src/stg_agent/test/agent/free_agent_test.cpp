@@ -103,7 +103,7 @@ TEST(FreeAgents, ShowARowOfEveryTargetTheFollowedOneFirst) {
   EXPECT_EQ(e.target_of_row[2], 2);
   EXPECT_EQ(e.target[0][39], 1.0F);
   EXPECT_EQ(e.target[1][39], 0.0F);
-  EXPECT_NEAR(e.target[1][2], FarScale(0.2), 1e-6);
+  EXPECT_NEAR(e.target[1][2], EntityScales(FreeModel(4, 3)).Far(0.2), 1e-6);
 }
 
 TEST(FreeAgents, FollowTheTargetWhoseRowAPolicyChooses) {

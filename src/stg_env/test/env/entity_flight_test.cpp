@@ -129,14 +129,15 @@ TEST(EntityFlight, APolicyThatChoosesToSearchLeavesATargetThatIsSeen) {
 }
 
 TEST(EntityFlight, EveryNumberOfACommandChangesTheFlight) {
-  const Scenario s = Short(Shipped("field"), 60);
   for (const agent::EntityAction action :
-       {agent::EntityAction::kGuidance, agent::EntityAction::kLaw5,
-        agent::EntityAction::kCourse3}) {
+       {agent::EntityAction::kGuidance, agent::EntityAction::kLaw5, agent::EntityAction::kCourse3,
+        agent::EntityAction::kVelocity3}) {
+    const bool walls = action == agent::EntityAction::kVelocity3;
+    const Scenario s = Short(Shipped(walls ? "medium" : "field"), 60);
     TestEnv env(s);
     env.Reset();
     // The AUVs fly to the circle first, because all numbers matter there.
-    agent::Decider law = agent::MakeDecider("encircle", s.model());
+    agent::Decider law = agent::MakeDecider(walls ? "pursuit" : "encircle", s.model());
     for (int k = 0; k < 50; ++k) {
       env.VectorEnv::Step(Decided(law, &env).data(), env.memory.arrays());
     }
@@ -166,17 +167,80 @@ TEST(EntityFlight, ACommandLastsFiveSecondsAndAnEpisodeStartsWithANewOne) {
   env.Reset();
   for (int episode = 0; episode < 2; ++episode) {
     for (int k = 0; k < 20; ++k) {
-      EXPECT_EQ(agent::CommandDue(env.agent(0, 0).memory()), k % 5 == 0) << k;
+      const agent::EntityMemory& memory = env.agent(0, 0).memory();
+      EXPECT_EQ(agent::CommandDue(memory, agent::EntityAction::kGuidance), k % 5 == 0) << k;
+      EXPECT_TRUE(agent::CommandDue(memory, agent::EntityAction::kVelocity3)) << k;
       env.VectorEnv::Step(Decided(c, &env).data(), env.memory.arrays());
     }
   }
 }
 
+/// Flies `pursuit`, whose velocity is far below the limits near the target. As commands of
+/// velocity3 it must be the same flight, although the AUVs have turned in the meantime.
+TEST(EntityFlight, AVelocityIsTheSameAsACommandAheadToPortAndUp) {
+  const Scenario s = Short(Shipped("hard", "nominal", {"control.heading=along_velocity"}), 200);
+  const agent::Decider pursuit = agent::MakeDecider("pursuit:cap=0.3", s.model());
+  TestEnv env(s);
+  env.Reset();
+  double turned = 0.0;
+  for (int k = 0; k < 100; ++k) {
+    const std::vector<double> wanted = Decided(pursuit, &env);
+    const agent::AgentView view = env.agent(0, 2);
+    float command[agent::kCommandNumbers] = {}, action[3];
+    agent::VelocityCommandOf(view, &wanted[6], command);
+    agent::TakeCommand(view, agent::EntityAction::kVelocity3, command);
+    agent::FollowCommand(view, agent::EntityAction::kVelocity3, action);
+    for (std::size_t a = 0; a < 3; ++a) {
+      EXPECT_NEAR(action[a], wanted[6 + a], 1e-6) << "step " << k << ", axis " << a;
+    }
+    turned = std::max(turned, std::abs(view.knowledge().trig.sin_psi));
+    env.VectorEnv::Step(wanted.data(), env.memory.arrays());
+  }
+  EXPECT_GT(turned, 0.1) << "the heading must matter";
+}
+
+/// A command straight ahead moves the AUV along its heading.
+TEST(EntityFlight, ACommandAheadMovesAlongTheHeading) {
+  const Scenario s = Short(Shipped("medium", "nominal", {"control.heading=along_velocity"}), 60);
+  const agent::Decider pursuit = agent::MakeDecider("pursuit", s.model());
+  TestEnv env(s);
+  env.Reset();
+  for (int k = 0; k < 30; ++k) {
+    env.VectorEnv::Step(Decided(pursuit, &env).data(), env.memory.arrays());
+  }
+  const agent::AgentView view = env.agent(0, 0);
+  const float ahead[agent::kCommandNumbers] = {0.2F, 0.0F, 0.0F, 0.0F, 0.0F};
+  float action[3];
+  agent::TakeCommand(view, agent::EntityAction::kVelocity3, ahead);
+  agent::FollowCommand(view, agent::EntityAction::kVelocity3, action);
+  const auto& most = s.model().vehicle.max_velocity_mps;
+  const agent::Knowledge<double>& k = view.knowledge();
+  const double x = static_cast<double>(action[0]) * most[0],
+               y = static_cast<double>(action[1]) * most[1];
+  EXPECT_NEAR(std::hypot(x, y), 0.2 * 0.75 * most[0], 1e-6);
+  EXPECT_NEAR(std::atan2(y, x), std::atan2(k.trig.sin_psi, k.trig.cos_psi), 1e-5);
+  EXPECT_GT(std::abs(k.trig.sin_psi), 0.1) << "the heading must matter";
+  EXPECT_EQ(action[2], 0.0F);
+}
+
+TEST(EntityFlight, AnActionFliesWhereItIsMeantFor) {
+  const agent::AgentModel walls = Shipped("medium").model(), open = Shipped("field").model();
+  for (const std::string& name : agent::EntityActionNames()) {
+    const auto policy = PolicyOf(agent::EntityActionNamed(name), 0.0);
+    const bool velocity = name == "velocity3";
+    EXPECT_NO_THROW(policy->RequireFits(velocity ? walls : open)) << name;
+    EXPECT_THROW(policy->RequireFits(velocity ? open : walls), UserError) << name;
+  }
+}
+
 TEST(EntityFlight, OneFileFliesSwarmsOfOneToTwentyAndIsTheSameOnAnyBlock) {
-  agent::Decider c;
-  c.entities = PolicyOf(agent::EntityAction::kGuidance, 0.2);
-  for (const int agents : {1, 2, 8, 20}) {
-    const Scenario s = Short(Shipped("field", "nominal", {"agents=" + std::to_string(agents)}), 30);
+  agent::Decider field, walls;
+  field.entities = PolicyOf(agent::EntityAction::kGuidance, 0.2);
+  walls.entities = PolicyOf(agent::EntityAction::kVelocity3, 0.2);
+  for (const int agents : {1, 2, 8, 20, -1, -12}) {
+    const std::string count = "agents=" + std::to_string(std::abs(agents));
+    const Scenario s = Short(Shipped(agents > 0 ? "field" : "hard", "nominal", {count}), 30);
+    const agent::Decider& c = agents > 0 ? field : walls;
     EvaluationOptions o;
     o.episodes = 4;
     const auto metrics = Evaluate(EnvFactory(s), c, o, nullptr);

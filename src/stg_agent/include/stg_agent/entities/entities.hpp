@@ -2,6 +2,7 @@
 
 #include "stg_agent/agent/agent_view.hpp"
 #include "stg_agent/agent/entity_memory.hpp"
+#include "stg_agent/entities/entity_scales.hpp"
 #include "stg_agent/entities/layout.hpp"
 #include "stg_agent/search/search_map.hpp"
 
@@ -56,9 +57,9 @@ struct EntityInput {
 /// kTargetRows.
 ///
 /// Some numbers are always zero, because the agent does not compute them yet: for a target, the
-/// second mixture component and the last innovation; for a neighbour, the share of its packets
-/// missed and their SINR; for an edge, the share of the information; for the AUV itself, the site's
-/// noise.
+/// last innovation, and in open water the second mixture component; for a neighbour in open water,
+/// the share of its packets missed and their SINR; for an edge, the share of the information; for
+/// the AUV itself, the site's noise.
 void BuildEntities(const EntityInput& input, Entities* out);
 
 /// The same of an agent after Observe, with its nearest neighbours.
@@ -72,12 +73,5 @@ void BuildEntities(const AgentView& agent, Entities* out);
 /// @param out [kSearchNumbers]
 void BuildSearchRow(const SearchMap& map, const Vec3<double>& p_WB, double cos_course,
                     double sin_course, double sensor_m, float* out);
-
-/// The scales of lengths, times and deviations (docs/entities.md).
-float FarScale(double distance_m);                       ///< L
-float MiddleScale(double distance_m, double desired_m);  ///< M
-float BandScale(double distance_m, double desired_m);    ///< B
-float AgeScale(double time_s);                           ///< A
-float DeviationScale(double std_m);                      ///< S
 
 }  // namespace stg::agent

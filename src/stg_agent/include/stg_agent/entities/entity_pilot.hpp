@@ -6,12 +6,16 @@
 namespace stg::agent {
 
 /// A command lasts this long, or one decision if that is longer: nothing new arrives in between,
-/// because the range sensor of the field looks every 5 s.
+/// because the range sensor of the field looks every 5 s. A `velocity3` command lasts one decision.
 inline constexpr double kCommandPeriod_s = 5.0;
-/// Number of decisions during a command, at least 1.
+/// Number of decisions during a command in open water, at least 1.
 int DecisionsPerCommand(const RunConfig& run);
-/// Time between two commands of a scenario [s].
+/// The same of any action.
+int DecisionsPerCommand(const RunConfig& run, EntityAction action);
+/// Time between two commands of a scenario in open water [s].
 double CommandPeriod_s(const RunConfig& run);
+/// The same of any action.
+double CommandPeriod_s(const RunConfig& run, EntityAction action);
 
 /// Guidance of a `guidance` command: +-60 m of radius; +-0.8 m/s; +-60 deg of phase; clockwise from
 /// -0.8 down; +-15 m of depth. A larger radius grows by three more standard deviations of the
@@ -20,7 +24,11 @@ double CommandPeriod_s(const RunConfig& run);
 Guidance<double> GuidanceOf(const float* command, double doubt_m);
 
 /// True if the AUV needs a new command at this decision.
-bool CommandDue(const EntityMemory& memory);
+bool CommandDue(const EntityMemory& memory, EntityAction action);
+/// The command of `velocity3` for a velocity in world axes, as a share of the largest velocity.
+/// @param velocity [3], as a controller of interface velocity3 acts
+/// @param command [3], clipped to what the network reaches
+void VelocityCommandOf(const AgentView& agent, const double* velocity, float* command);
 /// Stores a command for the next decisions.
 /// @param command [CommandSize], clipped to [-1, 1]
 void TakeCommand(const AgentView& agent, EntityAction action, const float* command);

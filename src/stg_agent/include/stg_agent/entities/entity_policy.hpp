@@ -15,16 +15,21 @@ namespace stg::agent {
 enum class EntityAction {
   kGuidance,  ///< five: guidance of the law `encircle`; all zero: the law without changes
   kLaw5,      ///< five: the same for the law that fits the situation
-  kCourse3    ///< three: change of course, speed and climb; no law
+  kCourse3,   ///< three: change of course, speed and climb; no law
+  kVelocity3  ///< three: velocity in K, for one decision; between walls; no law
 };
 inline constexpr int CommandSize(EntityAction action) {
-  return action == EntityAction::kCourse3 ? 3 : 5;
+  return action == EntityAction::kCourse3 || action == EntityAction::kVelocity3 ? 3 : 5;
 }
-/// "guidance", "law5" and "course3", in their order.
+/// "guidance", "law5", "course3" and "velocity3", in their order.
 const std::vector<std::string>& EntityActionNames();
 std::string EntityActionName(EntityAction action);
 /// Throws UserError for another name.
 EntityAction EntityActionNamed(const std::string& name);
+
+/// Throws UserError for an action that AUVs of this scenario cannot fly: velocity3 needs walls, the
+/// others need open water.
+void RequireFits(EntityAction action, const AgentModel& model);
 
 /// The networks of an actor over entities, named in the policy file.
 enum class EntityNetwork {
@@ -82,6 +87,9 @@ class EntityPolicy {
   /// @param command [CommandSize], in [-1, 1]
   /// Returns the row of the target that is chosen, or their number: to search. Of `pool` always 0.
   int Command(const Entities& entities, float* command) const;
+
+  /// Throws UserError when its action does not fit the scenario.
+  void RequireFits(const AgentModel& model) const;
 
   /// Whether it chooses a target or to search.
   bool chooses() const { return parameters_.network == EntityNetwork::kGraph; }

@@ -4,7 +4,8 @@
 /// any number of rows about others. docs/entities.md lists all numbers.
 ///
 /// Frame K of an AUV: origin its own navigated position, x along its course over ground (its
-/// heading below 0.3 m/s), y to port, z up. No number depends on where north is.
+/// heading below 0.3 m/s; between walls always its heading), y to port, z up. No number depends on
+/// where north is.
 namespace stg::agent {
 
 inline constexpr char kEntityLayout[] = "stg-2:entities";
