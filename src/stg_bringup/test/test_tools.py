@@ -103,7 +103,7 @@ class Tools(unittest.TestCase):
         self.assertGreater(figures["largest_agent_memory_mib"], 0.0)
 
     def test_help_is_no_argument(self):
-        for name in ("results/train_shipped.sh", "bench/soak"):
+        for name in ("results/train_shipped.sh", "results/train_walls.sh", "bench/soak"):
             done = run(self.folder, name, "--help")
             self.assertEqual((done.returncode, done.stderr), (0, ""), name)
             self.assertRegex(done.stdout, "(?i)usage: ")

@@ -7,18 +7,22 @@
 #include "auv_common/error.hpp"
 #include "auv_common/program.hpp"
 #include "auv_common/stop_signals.hpp"
+#include "marl_trainer/learn/options.hpp"
 #include "marl_trainer/learn/swarm/swarm_trainer.hpp"
 #include "ranks/started_by_mpi.hpp"
 
 int main(int argc, char** argv) {
-  stg::CommandLine app(
-      "train_swarm",
-      "Trains one policy for swarms of any size in open water and writes it as ONNX.");
-  std::string scenario = "field";
+  stg::CommandLine app("train_swarm",
+                       "Trains one policy for swarms of any size and writes it as ONNX.");
+  std::vector<std::string> scenarios = {"field"};
   stg::learn::SwarmConfig config;
   stg::learn::SwarmTrainer::Options options;
   options.workers = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  app.Add("--scenario", &scenario, "shipped name or file, in open water").ShowDefault();
+  app.Add("--scenario", &scenarios,
+          "shipped name or file, in open water; with --action velocity3: between walls, and "
+          "several of them with commas between them")
+      .SplitAt(',')
+      .ShowDefault();
   app.Add("--out", &options.out, "folder for checkpoint, policies and logs").Required();
   app.Add("--resume", &options.resume, "continue from the folder's checkpoint");
   app.Add("--start-from", &options.start_from,
@@ -43,9 +47,17 @@ int main(int argc, char** argv) {
     options.stop = &stg::HeedStopSignals();
     options.overrides = overrides;
     const std::string folder = stg::config::ScenarioFolder();
-    stg::learn::SwarmTrainer trainer(
-        stg::learn::FieldMixture(folder, scenario, config, config.envs / 8, overrides),
-        stg::learn::FieldValidation(folder, scenario, config, overrides), config, options);
+    const int kinds = config.envs / 8;
+    std::vector<stg::learn::SwarmTask> mixture, validation;
+    if (config.action == stg::agent::EntityAction::kVelocity3) {
+      mixture = stg::learn::WallsMixture(folder, scenarios, config, kinds, overrides);
+      validation = stg::learn::WallsValidation(folder, scenarios, overrides);
+    } else {
+      stg::learn::RequireOption(scenarios.size() == 1, "scenario", "must be one in open water");
+      mixture = stg::learn::FieldMixture(folder, scenarios[0], config, kinds, overrides);
+      validation = stg::learn::FieldValidation(folder, scenarios[0], config, overrides);
+    }
+    stg::learn::SwarmTrainer trainer(std::move(mixture), std::move(validation), config, options);
     if (trainer.Run()) return 0;
     std::cout << "stopped and saved; --resume continues" << std::endl;
     return stg::kStopped;

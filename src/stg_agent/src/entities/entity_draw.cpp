@@ -15,9 +15,9 @@ void LogShares(const float* logits, int count, float* log_shares) {
   for (int k = 0; k < count; ++k) log_shares[k] = logits[k] - (most + std::log(sum));
 }
 
-float NoiseKept(const RunConfig& run, double noise_time_s) {
+float NoiseKept(const RunConfig& run, EntityAction action, double noise_time_s) {
   if (noise_time_s <= 0.0) return 0.0F;
-  return static_cast<float>(std::exp(-CommandPeriod_s(run) / noise_time_s));
+  return static_cast<float>(std::exp(-CommandPeriod_s(run, action) / noise_time_s));
 }
 
 float DrawCommand(const CommandDistribution& of, Random* random, int* choice, float* command) {
@@ -79,7 +79,7 @@ bool FlyExploring(const EntityPolicy& policy, const AgentView& agent, Random* ra
     of.means = means;
     of.log_std = policy.parameters().log_std.data();
     of.size = CommandSize(policy.action());
-    of.keep = NoiseKept(agent.model().run, policy.parameters().noise_time_s);
+    of.keep = NoiseKept(agent.model().run, policy.action(), policy.parameters().noise_time_s);
     of.noise = &agent.memory().noise;
     decision->log_probability = DrawCommand(of, random, &decision->choice, decision->command);
     TakeDecision(agent, decision->entities, policy.action(), of.chooses, decision->choice,

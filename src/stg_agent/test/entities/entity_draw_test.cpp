@@ -105,7 +105,7 @@ class NoisyCommands {
     of_.means = &mean_;
     of_.log_std = &log_std_;
     of_.size = 1;
-    of_.keep = NoiseKept(RunOfDecisions(1.0), noise_time_s);
+    of_.keep = NoiseKept(RunOfDecisions(1.0), EntityAction::kGuidance, noise_time_s);
     of_.noise = &noise_;
   }
   double Next() {
@@ -147,8 +147,11 @@ TEST(EntityDraw, NoiseHasTheAutocorrelationOfItsTime) {
 }
 
 TEST(EntityDraw, ACommandOfALongDecisionKeepsLessNoise) {
-  EXPECT_NEAR(NoiseKept(RunOfDecisions(30.0), 60.0), std::exp(-0.5), 1e-6);
-  EXPECT_NEAR(NoiseKept(RunOfDecisions(0.5), 60.0), std::exp(-5.0 / 60.0), 1e-6);
+  EXPECT_NEAR(NoiseKept(RunOfDecisions(30.0), EntityAction::kGuidance, 60.0), std::exp(-0.5), 1e-6);
+  EXPECT_NEAR(NoiseKept(RunOfDecisions(0.5), EntityAction::kGuidance, 60.0),
+              std::exp(-5.0 / 60.0), 1e-6);
+  EXPECT_NEAR(NoiseKept(RunOfDecisions(0.5), EntityAction::kVelocity3, 60.0),
+              std::exp(-0.5 / 60.0), 1e-6);
 }
 
 // So the log density of the first command is not wrong either.

@@ -115,6 +115,7 @@ RecordedSwarmTrainer::RecordedSwarmTrainer(const Scenario& scenario, const Swarm
       folder_(options.out, options.log) {
   config_.ValidateOrThrow();
   RequireRecordable(scenario_.judge());
+  agent::RequireFits(config_.action, scenario_.model());
   folder_.Lock();
   UseOneBlasThread();
   state_.config = TextOf(config_);

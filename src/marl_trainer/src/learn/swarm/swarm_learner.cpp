@@ -41,6 +41,7 @@ SwarmLearner::SwarmLearner(const SwarmConfig& config)
                       0.0,
                       0.0,
                       0.0,
+                      0.0,
                       0.0});
   }
 }
@@ -139,11 +140,16 @@ void SwarmLearner::ActorLoss(const SwarmRollout& r, std::size_t row, int at, dou
       (advantage > 0.0F && ratio > 1.0F + clip) || (advantage < 0.0F && ratio < 1.0F - clip);
   part->kl += static_cast<double>(ratio - 1.0F - log_ratio);
   part->clipped += std::abs(ratio - 1.0F) > clip ? 1.0 : 0.0;
-  const float d_log_prob = cut ? 0.0F : -share * advantage * ratio;
+  const auto imitated = static_cast<float>(imitation_);
+  const float d_log_prob = cut ? 0.0F : -(1.0F - imitated) * share * advantage * ratio;
   float* d_mean = w.d_means.data() + (first + chosen) * static_cast<std::size_t>(size_);
   for (int c = 0; c < size_; ++c) {
     d_mean[c] = d_log_prob * z[c] * std::exp(-log_std[c]) * (1.0F - mean[c] * mean[c]);
     d_log_std[c] += d_log_prob * (z[c] * z[c] - 1.0F);
+  }
+  if (imitated > 0.0F) {
+    Imitate(r.taught.data() + row * static_cast<std::size_t>(size_), mean, imitated * share, d_mean,
+            part);
   }
   if (!actor_.chooses()) return;
   float disorder = 0.0F;
@@ -153,6 +159,25 @@ void SwarmLearner::ActorLoss(const SwarmRollout& r, std::size_t row, int at, dou
     const float l = part->log_shares[k], p = std::exp(l);
     w.d_logits[first + k] = d_log_prob * ((k == chosen ? 1.0F : 0.0F) - p) +
                             share * static_cast<float>(entropy) * p * (l + disorder);
+  }
+}
+
+/// Adds the gradient of the squared error of a command, in deviations of the exploration. Errors
+/// are weighted by the size of the teacher's command, as in PpoLoss.
+void SwarmLearner::Imitate(const float* taught, const float* mean, float share, float* d_mean,
+                           Part* part) const {
+  const float* log_std = actor_numbers_.data() + actor_.parameters();
+  float squares = 0.0F;
+  for (int c = 0; c < size_; ++c) {
+    const float t = taught[c] * std::exp(-log_std[c]);
+    squares += t * t;
+  }
+  const float weight =
+      share * std::pow(1.0F + squares, static_cast<float>(-0.5 * config_.imitation.focus));
+  for (int c = 0; c < size_; ++c) {
+    const float miss = mean[c] - taught[c];
+    d_mean[c] += weight * miss * std::exp(-2.0F * log_std[c]) * (1.0F - mean[c] * mean[c]);
+    part->imitation_error += static_cast<double>(miss) * static_cast<double>(miss);
   }
 }
 
@@ -170,7 +195,7 @@ void SwarmLearner::Gradient(const std::vector<SwarmRollout>& rollouts, const std
   part->critic_rows.Clear();
   part->actor_gradient.assign(actor_numbers_.size(), 0.0F);
   part->critic_gradient.assign(critic_numbers_.size(), 0.0F);
-  part->kl = part->clipped = part->value_loss = part->entropy = 0.0;
+  part->kl = part->clipped = part->value_loss = part->entropy = part->imitation_error = 0.0;
   for (std::size_t k = begin; k < end; ++k) {
     const SwarmRollout& r = rollouts[static_cast<std::size_t>(rows[k].rollout)];
     part->actor_rows.Add(r.actor, rows[k].row);
@@ -197,7 +222,8 @@ void SwarmLearner::Gradient(const std::vector<SwarmRollout>& rollouts, const std
 
 SwarmLearner::Report SwarmLearner::Update(std::vector<SwarmRollout>* rollouts,
                                           std::uint32_t collection, double progress,
-                                          WorkerPool* pool, Learns learns) {
+                                          WorkerPool* pool, Learns learns, double imitation) {
+  imitation_ = imitation;
   std::vector<Part> scratch;
   for (int w = 0; w < pool->workers(); ++w) scratch.push_back(parts_.front());
   pool->Run(static_cast<int>(rollouts->size()), [&](int k, int worker) {
@@ -226,8 +252,10 @@ SwarmLearner::Report SwarmLearner::Update(std::vector<SwarmRollout>* rollouts,
   const double planned =
       config_.learning_rate + (config_.last_learning_rate - config_.learning_rate) * progress;
   const double rate = learns == Learns::kBoth ? planned : SwarmConfig().learning_rate;
+  const double critic_rate =
+      config_.critic_learning_rate > 0.0 ? config_.critic_learning_rate : rate;
   const double entropy = config_.entropy + (config_.last_entropy - config_.entropy) * progress;
-  double kl = 0.0, clipped = 0.0, value_loss = 0.0, norm = 0.0, disorder = 0.0;
+  double kl = 0.0, clipped = 0.0, value_loss = 0.0, norm = 0.0, disorder = 0.0, missed = 0.0;
   int updates = 0, epochs = 0;
   for (int epoch = 0; epoch < config_.epochs; ++epoch) {
     Random random(config_.seed, Stream::kShuffle, collection, static_cast<std::uint32_t>(epoch), 0);
@@ -256,9 +284,10 @@ SwarmLearner::Report SwarmLearner::Update(std::vector<SwarmRollout>* rollouts,
         clipped += p.clipped / static_cast<double>(batch);
         value_loss += p.value_loss / static_cast<double>(batch);
         disorder += p.entropy / static_cast<double>(batch);
+        missed += p.imitation_error / static_cast<double>(batch);
       }
       KeepBlind(&parts_[0].actor_gradient);
-      const auto step = [&](std::vector<float>* gradient, std::vector<float>* numbers,
+      const auto step = [&](std::vector<float>* gradient, std::vector<float>* numbers, double rate,
                             AdamState* state) {
         const double length = GradientNorm(gradient->data(), 0, gradient->size());
         if (!std::isfinite(length))
@@ -269,9 +298,9 @@ SwarmLearner::Report SwarmLearner::Update(std::vector<SwarmRollout>* rollouts,
         return length;
       };
       if (learns == Learns::kBoth) {
-        norm += step(&parts_[0].actor_gradient, &actor_numbers_, &actor_adam_);
+        norm += step(&parts_[0].actor_gradient, &actor_numbers_, rate, &actor_adam_);
       }
-      step(&parts_[0].critic_gradient, &critic_numbers_, &critic_adam_);
+      step(&parts_[0].critic_gradient, &critic_numbers_, critic_rate, &critic_adam_);
       for (auto s = actor_numbers_.end() - size_; s != actor_numbers_.end(); ++s) {
         *s = std::clamp(*s, static_cast<float>(config_.least_log_std),
                         static_cast<float>(config_.most_log_std));
@@ -280,7 +309,8 @@ SwarmLearner::Report SwarmLearner::Update(std::vector<SwarmRollout>* rollouts,
     }
     kl = epoch_kl / static_cast<double>(count);
     ++epochs;
-    if (kl > 1.5 * config_.target_kl) break;
+    // An imitation moves as far as its rate allows.
+    if (imitation < 1.0 && kl > 1.5 * config_.target_kl) break;
   }
   averaged_ = std::min(averaged_ + 1.0, config_.average);
   for (std::size_t k = 0; k < average_.size(); ++k) {
@@ -299,6 +329,7 @@ SwarmLearner::Report SwarmLearner::Update(std::vector<SwarmRollout>* rollouts,
           {"gradient_norm", norm / updates},
           {"sigma", sigma},
           {"choice_entropy", disorder / updates},
+          {"imitation_error", missed / updates},
           {"return_mean", mean_},
           {"return_std", std_},
           {"rows", static_cast<double>(count)}};

@@ -8,6 +8,7 @@
 #include "marl_trainer/learn/train_config.hpp"
 #include "stg_agent/entities/entity_draw.hpp"
 #include "stg_agent/entities/entity_pilot.hpp"
+#include "stg_env/env/decide.hpp"
 
 namespace stg::learn {
 namespace {
@@ -49,8 +50,10 @@ SwarmShard::SwarmShard(const env::EnvFactory& make_env, const SwarmConfig& confi
         "scenario '" + scenario.run.name +
         "': an entity policy uses only an AUV's own knowledge, so mode must be acoustic");
   }
+  agent::RequireFits(config.action, scenario.model());
   const int blocks = std::max(1, total_envs / env::kMixBlock);
-  if (config.episode_steps % (blocks * agent::DecisionsPerCommand(scenario.run)) != 0) {
+  if (config.episode_steps % (blocks * agent::DecisionsPerCommand(scenario.run, config.action)) !=
+      0) {
     throw UserError("episode_steps: " + std::to_string(config.episode_steps) +
                     " decisions are not a whole number of commands for " + std::to_string(blocks) +
                     " blocks of environments");
@@ -62,6 +65,11 @@ SwarmShard::SwarmShard(const env::EnvFactory& make_env, const SwarmConfig& confi
   next_potential_.resize(rows);
   outcomes_.resize(static_cast<std::size_t>(env_.agents()));
   noise_.resize(rows);
+  if (!config.imitation.controller.empty()) {
+    teacher_ = agent::MakeDecider(config.imitation.controller, scenario.model());
+    if (config.imitation.privileged) env::ReadTruth(&*teacher_, scenario.mode);
+    teacher_actions_.resize(actions_.size());
+  }
   RestartAt(0);
 }
 
@@ -109,7 +117,7 @@ void SwarmShard::Observe(const SwarmActor& actor, std::uint32_t collection, int 
     of.means = workspace_.means.data() + static_cast<std::ptrdiff_t>(first) * size;
     of.log_std = actor.log_std;
     of.size = size;
-    of.keep = agent::NoiseKept(env_.scenario().run, config_.noise_time_s);
+    of.keep = agent::NoiseKept(env_.scenario().run, config_.action, config_.noise_time_s);
     of.noise = &noise_[static_cast<std::size_t>(row)];
     int choice = 0;
     float command[agent::kCommandNumbers];
@@ -121,9 +129,21 @@ void SwarmShard::Observe(const SwarmActor& actor, std::uint32_t collection, int 
   }
 }
 
+void SwarmShard::AskTeacher(SwarmRollout* out) {
+  env::Decide(*teacher_, env_, memory_.observations.data(), teacher_actions_.data());
+  const int n = env_.agents(), size = env_.action_size();
+  for (int row = 0; row < env_.envs() * n; ++row) {
+    float taught[agent::kCommandNumbers];
+    agent::VelocityCommandOf(env_.agent(row / n, row % n),
+                             teacher_actions_.data() + static_cast<std::ptrdiff_t>(row) * size,
+                             taught);
+    out->taught.insert(out->taught.end(), taught, taught + agent::CommandSize(config_.action));
+  }
+}
+
 void SwarmShard::FlyOn(int step, SwarmRollout* out) {
   const int n = env_.agents(), size = env_.action_size(),
-            period = agent::DecisionsPerCommand(env_.scenario().run);
+            period = agent::DecisionsPerCommand(env_.scenario().run, config_.action);
   std::fill(sums_.begin(), sums_.end(), 0.0F);
   for (int d = 0; d < period; ++d) {
     for (int e = 0; e < env_.envs(); ++e) {
@@ -191,7 +211,8 @@ void SwarmShard::Reward(int step, SwarmRollout* out) const {
   }
 }
 
-void SwarmShard::Collect(std::uint32_t collection, const SwarmActor& actor, SwarmRollout* out) {
+void SwarmShard::Collect(std::uint32_t collection, const SwarmActor& actor, SwarmRollout* out,
+                         bool teach) {
   *out = SwarmRollout();
   out->steps = config_.horizon;
   out->envs = env_.envs();
@@ -204,6 +225,7 @@ void SwarmShard::Collect(std::uint32_t collection, const SwarmActor& actor, Swar
       }
     }
     Observe(actor, collection, t, out);
+    if (teach) AskTeacher(out);
     FlyOn(t, out);
   }
   for (int e = 0; e < env_.envs(); ++e) {

@@ -76,7 +76,7 @@ SwarmTrainer::SwarmTrainer(std::vector<SwarmTask> mixture, std::vector<SwarmTask
 std::int64_t SwarmTrainer::StepsOfCollection() const {
   std::int64_t decisions = 0;
   for (const SwarmTask& task : mixture_) {
-    decisions += agent::DecisionsPerCommand(task.scenario.run) * kShardEnvs;
+    decisions += agent::DecisionsPerCommand(task.scenario.run, config_.action) * kShardEnvs;
   }
   return config_.horizon * decisions;
 }
@@ -102,9 +102,13 @@ agent::PolicyMetadata SwarmTrainer::Metadata() const {
   m.scenario_hash = ScenarioHash(validation_.front().scenario);
   m.training_step = steps_;
   m.seed = config_.seed;
-  m.metrics["validation_band_share"] = Number(last_);
+  m.metrics["validation_" + std::string(Score())] = Number(last_);
   m.metrics["training_seconds"] = Number(seconds_);
   return m;
+}
+
+const char* SwarmTrainer::Score() const {
+  return config_.action == agent::EntityAction::kVelocity3 ? "return" : "band_share";
 }
 
 void SwarmTrainer::Segment() {
@@ -112,13 +116,15 @@ void SwarmTrainer::Segment() {
   for (int c = 0; c < config_.segment && steps_ < config_.steps; ++c) {
     Stopwatch watch;
     const SwarmActor actor = learner_.actor();
+    const double imitation = config_.imitation.Weight(steps_);
     pool_.Run(static_cast<int>(shards_.size()), [&](int k, int) {
-      shards_[static_cast<std::size_t>(k)]->Collect(collection_, actor,
-                                                    &rollouts_[static_cast<std::size_t>(k)]);
+      const auto i = static_cast<std::size_t>(k);
+      shards_[i]->Collect(collection_, actor, &rollouts_[i], imitation > 0.0);
     });
     const double flown = watch.Lap();
     const double progress = static_cast<double>(steps_) / static_cast<double>(config_.steps);
-    const SwarmLearner::Report report = learner_.Update(&rollouts_, collection_, progress, &pool_);
+    const SwarmLearner::Report report = learner_.Update(&rollouts_, collection_, progress, &pool_,
+                                                        SwarmLearner::Learns::kBoth, imitation);
     const double learnt = watch.Lap();
     seconds_ += flown + learnt;
     steps_ += StepsOfCollection();
@@ -159,9 +165,9 @@ void SwarmTrainer::Validate() {
   o.episodes = config_.validation_episodes;
   o.seed = config_.validation_seed;
   double sum = 0.0;
-  const std::vector<std::string> columns = {"band_share",   "spread",         "whole_lost_rate",
-                                            "near_pairs",   "estimate_rmse",  "return",
-                                            "time_to_band", "tracking_error", "own_rmse"};
+  const std::vector<std::string> columns = {
+      "band_share",   "spread",         "whole_lost_rate", "near_pairs",          "estimate_rmse", "return",
+      "time_to_band", "tracking_error", "own_rmse",        "tail_colliding_pairs"};
   if (table_.empty()) {
     table_ = "steps,seconds,task";
     for (const std::string& c : columns) table_ += "," + c;
@@ -170,7 +176,7 @@ void SwarmTrainer::Validate() {
   for (const SwarmTask& task : validation_) {
     const task::MetricSummary s =
         task::Summarise(env::Evaluate(env::EnvFactory(task.scenario), factory, o, &pool_));
-    sum += s.Mean("band_share") / static_cast<double>(validation_.size());
+    sum += s.Mean(Score()) / static_cast<double>(validation_.size());
     std::string line = std::to_string(steps_) + "," + Number(seconds_) + "," + task.name;
     for (const std::string& c : columns) line += "," + Number(s.Mean(c));
     table_ += line + "\n";

@@ -6,8 +6,6 @@
 namespace stg::learn {
 namespace {
 
-constexpr double kSpeed = 2.3;
-
 class CriticRow {
  public:
   explicit CriticRow(float* out) : out_(out) {}
@@ -32,6 +30,7 @@ agent::PoolSpec SwarmCriticSpec() {
 
 void ReadTruth(const env::VectorEnv& env, int e, SwarmTruth* truth) {
   const Scenario& s = env.scenario(e);
+  truth->scales = agent::EntityScales(s.model());
   truth->desired_m = s.agent.task.desired_distance_m;
   truth->p_WB.clear();
   truth->v_WB.clear();
@@ -54,6 +53,7 @@ void AddCriticRow(const SwarmTruth& truth, int i, const agent::Entities& entitie
                   PackedRows* rows) {
   const auto u = static_cast<std::size_t>(i);
   const int target = truth.followed[u];
+  const agent::EntityScales& scales = truth.scales;
   const double desired = truth.desired_m;
   const Vec3<double>& p_WB = truth.p_WB[u];
   const Vec3<double>& v_WB = truth.v_WB[u];
@@ -74,8 +74,8 @@ void AddCriticRow(const SwarmTruth& truth, int i, const agent::Entities& entitie
   CriticRow extra(self + agent::kSelfNumbers);
   const bool known = entities.targets > 0;
   const Vec3<double> error = known ? truth.r_BT_W[u] - r : Vec3<double>{};
-  extra.Put(along(error) / 60.0).Put(across(error) / 60.0);
-  extra.Put(known ? static_cast<double>(agent::DeviationScale(Norm(error))) : 3.0);
+  extra.Put(along(error) / (60.0 * scales.length)).Put(across(error) / (60.0 * scales.length));
+  extra.Put(known ? static_cast<double>(scales.Deviation(Norm(error))) : 3.0);
   for (const int k : {11, 12, 21, 24, 25, 29}) {
     extra.Put(known ? static_cast<double>(entities.target[0][k]) : 0.0);
   }
@@ -83,12 +83,14 @@ void AddCriticRow(const SwarmTruth& truth, int i, const agent::Entities& entitie
   float goals[kCriticTarget];
   CriticRow g(goals);
   g.Put(ahead(r) / level).Put(aport(r) / level);
-  g.Put(static_cast<double>(agent::FarScale(distance)));
-  g.Put(static_cast<double>(agent::BandScale(distance, desired)));
-  g.Put(static_cast<double>(agent::MiddleScale(distance, desired)));
-  g.Put(r.z / 40.0).Put(along(goal.v_WT) / kSpeed).Put(across(goal.v_WT) / kSpeed);
-  g.Put(along(v_WB) / kSpeed).Put(across(v_WB) / kSpeed);
-  g.Put((across(goal.v_WT) - across(v_WB)) / std::max(level, 1.0) * 60.0);
+  g.Put(static_cast<double>(scales.Far(distance)));
+  g.Put(static_cast<double>(scales.Band(distance, desired)));
+  g.Put(static_cast<double>(scales.Middle(distance, desired)));
+  g.Put(r.z / (40.0 * scales.length))
+      .Put(scales.Speed(along(goal.v_WT)))
+      .Put(scales.Speed(across(goal.v_WT)));
+  g.Put(scales.Speed(along(v_WB))).Put(scales.Speed(across(v_WB)));
+  g.Put((across(goal.v_WT) - across(v_WB)) / std::max(level, scales.length) * 60.0 * scales.time);
 
   float others[64][kCriticOther];
   int count = 0;
@@ -99,10 +101,10 @@ void AddCriticRow(const SwarmTruth& truth, int i, const agent::Entities& entitie
     const double both = std::max(std::hypot(q.x, q.y) * level, 1e-9);
     CriticRow o(others[count++]);
     o.Put(ahead(d) / flat).Put(aport(d) / flat);
-    o.Put(static_cast<double>(agent::FarScale(apart))).Put((apart - 20.0) / 20.0).Put(d.z / 20.0);
-    o.Put(ahead(w) / kSpeed).Put(aport(w) / kSpeed);
-    o.Put(static_cast<double>(agent::FarScale(far)));
-    o.Put(static_cast<double>(agent::BandScale(far, desired)));
+    o.Put(static_cast<double>(scales.Far(apart))).Put((apart - scales.apart_m) / scales.apart_m);
+    o.Put(d.z / scales.apart_m).Put(scales.Speed(ahead(w))).Put(scales.Speed(aport(w)));
+    o.Put(static_cast<double>(scales.Far(far)));
+    o.Put(static_cast<double>(scales.Band(far, desired)));
     o.Put(-(q.x * r.x + q.y * r.y) / both).Put((q.x * r.y - q.y * r.x) / both);
     o.Put(truth.followed[j] == target ? 1.0 : 0.0);
   }

@@ -76,7 +76,8 @@ std::unique_ptr<OnlineLearner> MakeEntityLearner(const Scenario& scenario,
   if (!network.empty()) config.network = agent::EntityNetworkNamed(network);
   RefuseTrainParameters({"steps", "envs", "waters", "horizon", "segment", "episode-steps",
                          "free-assignment", "leaving", "last-learning-rate", "last-entropy",
-                         "validation-interval", "validation-episodes"},
+                         "validation-interval", "validation-episodes", "imitate", "imitation-steps",
+                         "imitation-share", "imitation-focus", "privileged-teacher"},
                         kOnlyInEnvironments);
   config::Table table;
   config.Describe(&table);

@@ -33,6 +33,13 @@ SwarmTask Waters(int agents) {
               {"agents=" + std::to_string(agents), "time.episode_steps=60", "time.tail_steps=60"})};
 }
 
+SwarmTask Basin(int agents) {
+  return {std::to_string(agents),
+          LoadNamedScenario(
+              config::ScenarioFolder(), "medium", "nominal",
+              {"agents=" + std::to_string(agents), "time.episode_steps=60", "time.tail_steps=60"})};
+}
+
 class SwarmTraining : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -54,6 +61,9 @@ class SwarmTraining : public ::testing::Test {
     options.workers = workers;
     options.resume = resume;
     options.stop = stop;
+    if (config_.action == agent::EntityAction::kVelocity3) {
+      return SwarmTrainer({Basin(3), Basin(5)}, {Basin(4)}, config_, options).Run();
+    }
     return SwarmTrainer({Waters(3), Waters(5)}, {Waters(4)}, config_, options).Run();
   }
   agent::EntityPolicy Last(const std::string& name) const {
@@ -98,6 +108,65 @@ TEST_F(SwarmTraining, DoesNotDependOnTheNumberOfWorkers) {
     EXPECT_EQ(policy.metadata().training_step, config_.steps);
     EXPECT_EQ(policy.metadata().action_interface, name);
   }
+}
+
+/// Between walls: a command for each decision, and a controller to imitate.
+TEST_F(SwarmTraining, BetweenWallsItImitatesAControllerAndDependsOnNoWorkers) {
+  config_.action = agent::EntityAction::kVelocity3;
+  config_.imitation.controller = "pursuit_separated";
+  config_.imitation.steps = 1'000'000'000;
+  config_.imitation.privileged = true;
+  config_.noise_time_s = 0.0;
+  config_.log_std = -4.5;
+  config_.least_log_std = -8.0;
+  config_.horizon = 20;
+  config_.learning_rate = 3e-3;
+  config_.steps = 40 * 320;
+  config_.validation_interval = 100;
+  EXPECT_TRUE(Train("one", 1, false));
+  EXPECT_TRUE(Train("three", 3, false));
+  EXPECT_EQ(Last("one").parameters().numbers, Last("three").parameters().numbers);
+  const std::vector<double> misses = Column("one", "imitation_error");
+  ASSERT_EQ(misses.size(), 40u);
+  EXPECT_LT(misses.back(), 0.2 * misses.front());
+  // Imitation alone changes no deviation of the exploration.
+  EXPECT_EQ(Last("one").parameters().log_std[0], -4.5F);
+}
+
+TEST_F(SwarmTraining, WithHalfAnImitationBothLossesCount) {
+  config_.action = agent::EntityAction::kVelocity3;
+  config_.noise_time_s = 0.0;
+  ASSERT_TRUE(Train("alone", 1, false));
+  config_.imitation.controller = "pursuit_separated";
+  config_.imitation.steps = 1'000'000'000;
+  config_.imitation.share = 0.5;
+  ASSERT_TRUE(Train("half", 1, false));
+  config_.imitation.privileged = true;
+  ASSERT_TRUE(Train("privileged", 1, false));
+  EXPECT_NE(Last("alone").parameters().numbers, Last("half").parameters().numbers);
+  EXPECT_NE(Last("half").parameters().numbers, Last("privileged").parameters().numbers);
+  EXPECT_NE(Last("half").parameters().log_std, std::vector<float>(3, -2.0F)) << "MAPPO counts, too";
+}
+
+TEST_F(SwarmTraining, TheMixtureBetweenWallsHasPoorLinksAndBothStages) {
+  const std::string folder = config::ScenarioFolder();
+  EXPECT_THROW(WallsMixture(folder, {"medium", "hard"}, config_, 16), UserError)
+      << "law5 needs open water";
+  config_.imitation.controller = "pursuit";
+  config_.imitation.steps = 1;
+  EXPECT_THROW(FieldMixture(folder, "field", config_, 16), UserError) << "law5 imitates nothing";
+  config_.action = agent::EntityAction::kVelocity3;
+  EXPECT_THROW(WallsMixture(folder, {"field"}, config_, 16), UserError) << "no walls";
+  int far = 0, poor = 0;
+  for (const SwarmTask& task : WallsMixture(folder, {"medium", "hard"}, config_, 16)) {
+    const Scenario& s = task.scenario;
+    far += s.run.name == "hard" ? 1 : 0;
+    poor += s.channel.extended.loss_probability > 0.1 ? 1 : 0;
+    EXPECT_NEAR(s.reward.separation_distance_m, 1.06 * 0.022, 1e-6);
+    EXPECT_EQ(s.run.time.episode_steps, config_.episode_steps);
+  }
+  EXPECT_EQ(far, 8);
+  EXPECT_GE(poor, 8);
 }
 
 TEST_F(SwarmTraining, ResumedEqualsUninterruptedBitForBit) {

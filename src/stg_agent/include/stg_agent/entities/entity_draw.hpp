@@ -28,9 +28,9 @@ struct CommandDistribution {
   CommandNoise* noise = nullptr;
 };
 
-/// Correlation of the noises of two commands in a row: exp(-CommandPeriod_s(run) / noise_time_s).
+/// Correlation of the noises of two commands in a row: exp(-CommandPeriod_s(run, action) / noise_time_s).
 /// @param noise_time_s correlation time [s]; 0: independent noise, which gives 0
-float NoiseKept(const RunConfig& run, double noise_time_s);
+float NoiseKept(const RunConfig& run, EntityAction action, double noise_time_s);
 
 /// Draws a choice and a command. @param command [size], before any clipping
 /// Returns the natural log of their density.

@@ -5,13 +5,15 @@
 #include <vector>
 
 #include "auv_common/config/field.hpp"
+#include "marl_trainer/learn/collect/imitation.hpp"
 #include "stg_agent/entities/entity_policy.hpp"
 #include "stg_env/scenario/scenario.hpp"
 
 namespace stg::learn {
 
 /// Hyperparameters of learning with swarms of any size (docs/entities.md). A policy step is one
-/// command and lasts 5 s, or one decision if that is longer.
+/// command. It lasts 5 s, or one decision if that is longer; with the action velocity3 it lasts one
+/// decision. The defaults are for open water.
 struct SwarmConfig {
   std::uint64_t seed = 0;
   std::int64_t steps = 2'048'000;  ///< decisions of a swarm; each lasts 1 s in the field
@@ -43,12 +45,15 @@ struct SwarmConfig {
   int epochs = 3;
   int minibatch = 7000;  ///< in rows of AUVs
   double learning_rate = 5e-4, last_learning_rate = 5e-5;
+  double critic_learning_rate = 0.0;  ///< constant; 0: the critic learns at the actor's rate
   double clip = 0.2, target_kl = 0.02, gradient_norm = 0.5, adam_eps = 1e-5;
   double log_std = -2.0, least_log_std = -3.0, most_log_std = -1.5;
   double noise_time_s = 60.0;  ///< correlation time of the exploration; 0: white noise
   double average = 20.0;       ///< updates over which the policy's parameters are averaged
   double entropy = 0.01, last_entropy = 0.001;  ///< weight of the entropy of the choices
   double value_memory = 500'000;  ///< number of rows that the moments of the returns remember
+
+  ImitationConfig imitation;  ///< only with the action velocity3
 
   int validation_interval = 2;  ///< segments
   int validation_episodes = 32;
@@ -65,6 +70,20 @@ struct SwarmTask {
   std::string name;
   Scenario scenario;
 };
+
+/// The mixture between walls for `count` shards: the scenarios in turn, 2 to 8 AUVs, and stress
+/// conditions, more than half of them with poor links. Reward and separation are those with which
+/// the shipped policies were trained. Throws UserError for a scenario in open water.
+/// @param overrides as of FieldMixture
+std::vector<SwarmTask> WallsMixture(const std::string& folder,
+                                    const std::vector<std::string>& scenarios,
+                                    const SwarmConfig& config, int count,
+                                    const std::vector<std::string>& overrides = {});
+/// Tasks of the validation: the scenarios, nominal and under combined stress. Only the overrides
+/// change them.
+std::vector<SwarmTask> WallsValidation(const std::string& folder,
+                                       const std::vector<std::string>& scenarios,
+                                       const std::vector<std::string>& overrides = {});
 
 /// The mixture of the field for `count` shards: 1 to 8 AUVs, one or two targets, stress conditions,
 /// search and hunt. The reward of the training replaces the scenario's. Throws UserError for

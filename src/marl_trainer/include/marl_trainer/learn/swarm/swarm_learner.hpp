@@ -23,12 +23,13 @@ class SwarmLearner {
     return {actor_, actor_numbers_.data(), actor_numbers_.data() + actor_.parameters()};
   }
   /// Learns from one collection. @param progress done share of the training, in [0, 1]
+  /// @param imitation share of imitation in the loss of the actor; above 0 the rollouts are taught
   /// Returns its results, by name.
   using Report = std::vector<std::pair<std::string, double>>;
   /// kCritic: the actor stays as it is, and the critic learns at the rate of an untrained one.
   enum class Learns { kBoth, kCritic };
   Report Update(std::vector<SwarmRollout>* rollouts, std::uint32_t collection, double progress,
-                WorkerPool* pool, Learns learns = Learns::kBoth);
+                WorkerPool* pool, Learns learns = Learns::kBoth, double imitation = 0.0);
 
   /// The policy as it is, and its mean over the last updates (SwarmConfig::average).
   agent::EntityPolicy Policy(const agent::PolicyMetadata& metadata) const;
@@ -54,7 +55,7 @@ class SwarmLearner {
     ActorWorkspace actor;
     PoolBatch::Workspace critic;
     std::vector<float> d_critic, actor_gradient, critic_gradient, log_shares;
-    double kl = 0.0, clipped = 0.0, value_loss = 0.0, entropy = 0.0;
+    double kl = 0.0, clipped = 0.0, value_loss = 0.0, entropy = 0.0, imitation_error = 0.0;
   };
 
   void Evaluate(SwarmRollout* rollout, Part* part) const;
@@ -69,6 +70,8 @@ class SwarmLearner {
   /// Adds the gradient of the loss of a row to the gradient of the actor's outputs.
   void ActorLoss(const SwarmRollout& rollout, std::size_t row, int at, double entropy, float share,
                  Part* part) const;
+  void Imitate(const float* taught, const float* mean, float share, float* d_mean,
+               Part* part) const;
   void KeepBlind(std::vector<float>* numbers) const;
 
   SwarmConfig config_;
@@ -83,6 +86,7 @@ class SwarmLearner {
   AdamState actor_adam_, critic_adam_;
   double mean_ = 0.0, square_ = 1.0, seen_ = 0.0;  // moments of the returns
   double std_ = 1.0;
+  double imitation_ = 0.0;       // share of imitation in the present update
   bool without_critic_ = false;  // a trained actor has an untrained critic
   float advantage_mean_ = 0.0F, advantage_scale_ = 1.0F;
   std::vector<Part> parts_;

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "marl_trainer/learn/swarm/network/entity_actor.hpp"
 #include "marl_trainer/learn/swarm/swarm_config.hpp"
 #include "marl_trainer/learn/swarm/swarm_reward.hpp"
 #include "marl_trainer/learn/swarm/swarm_truth.hpp"
+#include "stg_agent/decider/decider.hpp"
 #include "stg_env/env/vector_env.hpp"
 
 namespace stg::learn {
@@ -21,6 +23,7 @@ struct SwarmRollout {
   std::vector<float> commands;  // [rows, command size], unclipped
   std::vector<int> choices;     // [rows], index of the choice
   std::vector<float> log_prob;  // [rows]
+  std::vector<float> taught;    // [rows, command size], of the imitated controller, or empty
   // [rows]: the AUV's own mean reward; the reward that it learns from.
   std::vector<float> own, rewards;
   // [rows], 1: nothing is learnt from this row, because the AUV had left the swarm.
@@ -50,7 +53,9 @@ class SwarmShard {
   /// Starts the k-th episode of every environment. The first episodes are cut to different lengths.
   void RestartAt(std::uint64_t k);
   /// Makes `config.horizon` policy steps with exploration. @param collection keys the draws
-  void Collect(std::uint32_t collection, const SwarmActor& actor, SwarmRollout* out);
+  /// @param teach also ask the imitated controller in each state
+  void Collect(std::uint32_t collection, const SwarmActor& actor, SwarmRollout* out,
+               bool teach = false);
 
  private:
   void Observe(const SwarmActor& actor, std::uint32_t collection, int step, SwarmRollout* out);
@@ -61,6 +66,9 @@ class SwarmShard {
   void Pay();
   void Reward(int step, SwarmRollout* out) const;
   float Potential(int e, int i) const;
+
+  /// Asks the imitated controller in the present state.
+  void AskTeacher(SwarmRollout* out);
 
   SwarmConfig config_;
   int first_env_;
@@ -73,7 +81,9 @@ class SwarmShard {
   PackedRows now_, last_;
   ActorWorkspace workspace_;
   SwarmTruth truth_;
-  std::vector<Outcome> outcomes_;  // [agents]
+  std::optional<agent::Decider> teacher_;
+  std::vector<double> teacher_actions_;  // [envs, agents, 3]
+  std::vector<Outcome> outcomes_;        // [agents]
 };
 
 }  // namespace stg::learn

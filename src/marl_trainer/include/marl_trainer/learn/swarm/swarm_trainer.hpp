@@ -17,7 +17,7 @@ namespace stg::learn {
 /// Trains one policy for swarms of any size: collections, updates, validation and checkpoints.
 ///
 /// The folder gets progress.csv (one row per collection), validation.csv (one row per validation
-/// and task), policy_last.onnx, policy_best.onnx (the best mean band share in validation),
+/// and task), policy_last.onnx, policy_best.onnx (the best in validation),
 /// config.json and checkpoint.ckpt. After every `segment` collections all environments restart and
 /// a checkpoint is written. So a resumed training has the same result as an uninterrupted one, bit
 /// for bit.
@@ -48,6 +48,8 @@ class SwarmTrainer {
   std::string ConfigText() const;
   agent::PolicyMetadata Metadata() const;
   std::int64_t StepsOfCollection() const;
+  /// The metric that chooses the best policy: the share in the band, and between walls the return.
+  const char* Score() const;
 
   SwarmConfig config_;
   Options options_;

@@ -23,6 +23,7 @@ agent::PoolSpec SwarmCriticSpec();
 
 /// The true state of one swarm, and what its AUVs estimate.
 struct SwarmTruth {
+  agent::EntityScales scales;
   double desired_m = 0.0;                ///< desired distance to a target
   std::vector<Vec3<double>> p_WB, v_WB;  ///< [agents]
   std::vector<dynamics::TargetState<double>> targets;
