@@ -148,10 +148,10 @@ TEST(EntityDraw, NoiseHasTheAutocorrelationOfItsTime) {
 
 TEST(EntityDraw, ACommandOfALongDecisionKeepsLessNoise) {
   EXPECT_NEAR(NoiseKept(RunOfDecisions(30.0), EntityAction::kGuidance, 60.0), std::exp(-0.5), 1e-6);
-  EXPECT_NEAR(NoiseKept(RunOfDecisions(0.5), EntityAction::kGuidance, 60.0),
-              std::exp(-5.0 / 60.0), 1e-6);
-  EXPECT_NEAR(NoiseKept(RunOfDecisions(0.5), EntityAction::kVelocity3, 60.0),
-              std::exp(-0.5 / 60.0), 1e-6);
+  EXPECT_NEAR(NoiseKept(RunOfDecisions(0.5), EntityAction::kGuidance, 60.0), std::exp(-5.0 / 60.0),
+              1e-6);
+  EXPECT_NEAR(NoiseKept(RunOfDecisions(0.5), EntityAction::kVelocity3, 60.0), std::exp(-0.5 / 60.0),
+              1e-6);
 }
 
 // So the log density of the first command is not wrong either.

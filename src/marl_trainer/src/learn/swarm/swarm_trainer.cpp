@@ -166,8 +166,8 @@ void SwarmTrainer::Validate() {
   o.seed = config_.validation_seed;
   double sum = 0.0;
   const std::vector<std::string> columns = {
-      "band_share",   "spread",         "whole_lost_rate", "near_pairs",          "estimate_rmse", "return",
-      "time_to_band", "tracking_error", "own_rmse",        "tail_colliding_pairs"};
+      "band_share", "spread",       "whole_lost_rate", "near_pairs", "estimate_rmse",
+      "return",     "time_to_band", "tracking_error",  "own_rmse",   "tail_colliding_pairs"};
   if (table_.empty()) {
     table_ = "steps,seconds,task";
     for (const std::string& c : columns) table_ += "," + c;

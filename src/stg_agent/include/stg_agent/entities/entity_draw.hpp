@@ -28,7 +28,8 @@ struct CommandDistribution {
   CommandNoise* noise = nullptr;
 };
 
-/// Correlation of the noises of two commands in a row: exp(-CommandPeriod_s(run, action) / noise_time_s).
+/// Correlation of the noises of two commands in a row: exp(-CommandPeriod_s(run, action) /
+/// noise_time_s).
 /// @param noise_time_s correlation time [s]; 0: independent noise, which gives 0
 float NoiseKept(const RunConfig& run, EntityAction action, double noise_time_s);
 
