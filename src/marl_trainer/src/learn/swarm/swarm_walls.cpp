@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "marl_trainer/learn/swarm/swarm_config.hpp"
 
 /// The scenarios that a training between walls flies.
@@ -48,18 +46,10 @@ std::vector<SwarmTask> WallsMixture(const std::string& folder,
     agent::RequireFits(config.action, model);
     const std::string steps = std::to_string(config.episode_steps);
     const double apart_m = kSeparation * 2.0 * model.vehicle.radius_m;
-    std::vector<std::string> keys;
-    for (const auto& [key, value] : std::vector<std::pair<std::string, std::string>>{
-             {"agents=", std::to_string(basin.agents)},
-             {"time.episode_steps=", steps},
-             {"time.tail_steps=", steps},
-             {"reward.weights.separation=", "0.2"},
-             {"reward.separation_distance_m=", std::to_string(apart_m)}}) {
-      const bool set = std::any_of(
-          overrides.begin(), overrides.end(),
-          [start = key](const std::string& other) { return other.rfind(start, 0) == 0; });
-      if (!set) keys.push_back(key + value);
-    }
+    std::vector<std::string> keys = NotSetBy(
+        overrides, {"agents=" + std::to_string(basin.agents), "time.episode_steps=" + steps,
+                    "time.tail_steps=" + steps, "reward.weights.separation=0.2",
+                    "reward.separation_distance_m=" + std::to_string(apart_m)});
     keys.insert(keys.end(), overrides.begin(), overrides.end());
     mixture.push_back({name + "/" + basin.condition + "/" + std::to_string(basin.agents),
                        LoadNamedScenario(folder, name, basin.condition, keys)});

@@ -107,18 +107,24 @@ std::vector<std::string> SwarmKeys(const Waters& waters) {
   return keys;
 }
 
-/// True if one of the overrides sets the key of this one, "key=value".
-bool IsSet(const std::string& override, const std::vector<std::string>& overrides) {
-  const std::string start = override.substr(0, override.find('=') + 1);
-  return std::any_of(overrides.begin(), overrides.end(),
-                     [&](const std::string& other) { return other.rfind(start, 0) == 0; });
-}
-
 std::string NameOf(const Waters& waters, const std::string& scenario) {
   return waters.scenario.empty() ? scenario : waters.scenario;
 }
 
 }  // namespace
+
+std::vector<std::string> NotSetBy(const std::vector<std::string>& others,
+                                  const std::vector<std::string>& overrides) {
+  std::vector<std::string> left;
+  for (const std::string& override : overrides) {
+    const std::string start = override.substr(0, override.find('=') + 1);
+    const bool set = std::any_of(others.begin(), others.end(), [&](const std::string& other) {
+      return other.rfind(start, 0) == 0;
+    });
+    if (!set) left.push_back(override);
+  }
+  return left;
+}
 
 std::vector<SwarmTask> FieldMixture(const std::string& folder, const std::string& scenario,
                                     const SwarmConfig& config, int count,
@@ -147,9 +153,8 @@ std::vector<SwarmTask> FieldMixture(const std::string& folder, const std::string
       keys.push_back("fleet.leave=[" + leave + ", 0]" + second + "]");
       keys.push_back("fleet.join=[" + join + ", 0]]");
     }
-    for (const std::string& key : SwarmRewardKeys()) {
-      if (!IsSet(key, overrides)) keys.push_back(key);
-    }
+    const std::vector<std::string> reward = NotSetBy(overrides, SwarmRewardKeys());
+    keys.insert(keys.end(), reward.begin(), reward.end());
     keys.insert(keys.end(), overrides.begin(), overrides.end());
     mixture.push_back({name + "/" + waters.condition + "/" + std::to_string(agents),
                        LoadNamedScenario(folder, name, waters.condition, keys)});

@@ -85,6 +85,10 @@ std::vector<SwarmTask> WallsValidation(const std::string& folder,
                                        const std::vector<std::string>& scenarios,
                                        const std::vector<std::string>& overrides = {});
 
+/// Those of the scenario overrides "key=value" whose keys the others do not set.
+std::vector<std::string> NotSetBy(const std::vector<std::string>& others,
+                                  const std::vector<std::string>& overrides);
+
 /// The mixture of the field for `count` shards: 1 to 8 AUVs, one or two targets, stress conditions,
 /// search and hunt. The reward of the training replaces the scenario's. Throws UserError for
 /// options that do not fit. With `config.waters` these take the places of the mixture in turn.
